@@ -1,0 +1,1 @@
+//! Synthetic clips shared by the benchmarks.

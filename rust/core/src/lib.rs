@@ -1,0 +1,25 @@
+//! Filters, statistics and reconstruction for rotation time series.
+//!
+//! This crate is the mathematics of quatfilt; it knows nothing of Python. Rotations are unit quaternions,
+//! Hamilton, scalar first; a clip is `(frames, joints, 4)` in C order, and time is its first axis.
+//!
+//! The rooms:
+//!
+//! - foundation: [`error`], [`real`] (float32 and float64), [`clip`] (borrowed views and aligned planes),
+//!   [`elementary`] (vectorisable functions), [`simd`] (run-time dispatch), [`parallel`] (the thread pool);
+//! - [`rotations`]: algebra, Karcher mean, resampling.
+//!
+//! Hot kernels are maps over frames on aligned planes: no libm, no fused multiply-add and no horizontal sums, so
+//! that the bits are the same at every SIMD level and for every number of threads.
+
+pub mod clip;
+pub mod elementary;
+pub mod error;
+pub mod parallel;
+pub mod real;
+pub mod rotations;
+pub mod simd;
+
+pub use clip::{ClipMut, ClipView};
+pub use error::Error;
+pub use real::Real;

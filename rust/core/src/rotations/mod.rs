@@ -1,0 +1,3 @@
+//! Unit quaternions: algebra, statistics and resampling.
+
+pub mod quaternion;
