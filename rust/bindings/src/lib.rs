@@ -1,1 +1,15 @@
-//! Bindings.
+//! The module `quatfilt._core`: converts arrays, detaches from the interpreter, calls the core. No arithmetic.
+//!
+//! Each function has the name and the positional arguments of its definition in `quatfilt._reference`.
+
+mod array;
+mod rotations;
+mod threads;
+
+#[pyo3::pymodule]
+mod _core {
+    #[pymodule_export]
+    use super::rotations::quaternion::{conjugate, exp, geodesic_distance, log, multiply, normalize};
+    #[pymodule_export]
+    use super::threads::{get_num_threads, is_debug_build, set_num_threads, simd_level};
+}

@@ -1,0 +1,28 @@
+"""Clean, analyse and reconstruct motion-capture rotations.
+
+Rotations are unit quaternions ``(frames, joints, 4)``, scalar first; angles are rotation angles in radians; times are
+seconds with ``fps=``, and frames without it.
+"""
+
+import warnings
+
+from quatfilt._backend import get_backend, get_num_threads, set_num_threads, simd_level, use_backend
+from quatfilt._core import is_debug_build as _is_debug_build
+from quatfilt.rotations.quaternion import conjugate, exp, geodesic_distance, log, multiply, normalize
+
+if _is_debug_build():
+    warnings.warn("quatfilt was built without optimisation: it is ten times slower than it should be", RuntimeWarning, stacklevel=2)
+
+__all__ = [
+    "conjugate",
+    "exp",
+    "geodesic_distance",
+    "get_backend",
+    "get_num_threads",
+    "log",
+    "multiply",
+    "normalize",
+    "set_num_threads",
+    "simd_level",
+    "use_backend",
+]

@@ -1,0 +1,113 @@
+"""The one place that chooses who computes: the Rust core or the NumPy reference.
+
+A backend is a module of free functions. Both have the same functions with the same positional arguments.
+"""
+
+import os
+from types import ModuleType, TracebackType
+from typing import Literal, Self
+
+from quatfilt import _core, _reference
+
+Backend = Literal["rust", "numpy"]
+
+_MODULES: dict[str, ModuleType] = {"rust": _core, "numpy": _reference}
+
+
+def _checked(name: object) -> ModuleType:
+    if name not in _MODULES:
+        raise ValueError(f"backend: expected 'rust' or 'numpy', got {name!r}")
+    return _MODULES[str(name)]
+
+
+_current = _checked(os.environ.get("QUATFILT_BACKEND", "rust"))
+
+
+def ops() -> ModuleType:
+    """Return the functions of the backend in use."""
+    return _current
+
+
+class use_backend:  # noqa: N801 - used as a function, and as a context manager
+    """Choose who computes, for the whole process.
+
+    Parameters
+    ----------
+    name : {"rust", "numpy"}
+        ``"rust"``, the default, is the compiled core. ``"numpy"`` is the reference implementation: slow, written to
+        be read, and the definition of every result. The environment variable ``QUATFILT_BACKEND`` sets the first
+        choice.
+
+    Raises
+    ------
+    ValueError
+        If there is no backend of that name.
+
+    Examples
+    --------
+    >>> import quatfilt as qf
+    >>> with qf.use_backend("numpy"):
+    ...     qf.log([1.0, 0.0, 0.0, 0.0])
+    array([0., 0., 0.])
+    """
+
+    def __init__(self, name: Backend) -> None:
+        global _current  # noqa: PLW0603 - the choice is the process's
+        chosen = _checked(name)
+        self._before = _current
+        _current = chosen
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        value: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        global _current  # noqa: PLW0603 - the choice is the process's
+        _current = self._before
+
+
+def get_backend() -> Backend:
+    """Return the name of the backend in use."""
+    return "rust" if _current is _core else "numpy"
+
+
+def set_num_threads(n: int | None) -> None:
+    """Set how many threads the Rust core uses.
+
+    Parameters
+    ----------
+    n : int or None
+        At least 1; None returns to the default: ``QUATFILT_NUM_THREADS``, else ``RAYON_NUM_THREADS``, else the
+        processors that this process may run on. Tools that limit the threads of BLAS libraries do not see this pool.
+
+    Raises
+    ------
+    ValueError
+        If `n` is below 1.
+    """
+    if n is not None and (isinstance(n, bool) or not isinstance(n, int)):
+        raise TypeError(f"n: expected an integer or None, got {type(n).__name__}")
+    if n is not None and n < 1:
+        raise ValueError(f"n: expected at least 1, got {n}")
+    _core.set_num_threads(n or 0)
+
+
+def get_num_threads() -> int:
+    """Return how many threads the Rust core uses."""
+    return _core.get_num_threads()
+
+
+def simd_level() -> str:
+    """Return the vector instructions that the Rust core uses: ``"baseline"``, ``"avx2"`` or ``"avx512"``.
+
+    The processor is asked once per process. The environment variable ``QUATFILT_SIMD`` may lower the level; the
+    results have the same bits at every level.
+    """
+    return _core.simd_level()
+
+
+__all__ = ["Backend", "get_backend", "get_num_threads", "ops", "set_num_threads", "simd_level", "use_backend"]

@@ -1,0 +1,199 @@
+"""Every check of what users pass in, and every message.
+
+Arrays leave this module native, C-contiguous, aligned, float32 or float64, and scalar first.
+"""
+
+import math
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from quatfilt import _backend
+from quatfilt._typing import Array
+
+_FAR_FROM_UNIT = 0.1
+"""A norm that differs from 1 by more is no rounding error: such data are not unit quaternions."""
+
+_WIDEST_INTEGERS = "biu"
+
+_Choice = TypeVar("_Choice", bound=str)
+
+
+def floats(value: Any, name: str) -> Array:
+    """Return `value` as a native float32 or float64 array, without a copy where it already is one."""
+    if hasattr(value, "as_quat"):  # SciPy's Rotation, scalar last
+        value = np.roll(value.as_quat(), 1, axis=-1)
+    elif hasattr(value, "__dlpack__") and not hasattr(value, "__array__"):
+        value = np.from_dlpack(value)
+    try:
+        array = np.asarray(value)
+    except ValueError as error:
+        raise ValueError(f"{name}: expected a rectangular array of numbers ({error})") from None
+    if array.dtype.kind in _WIDEST_INTEGERS:
+        dtype = np.dtype(np.float64)
+    elif array.dtype.kind == "f":
+        dtype = np.dtype(np.float32 if array.dtype.itemsize <= 4 else np.float64)
+    else:
+        raise TypeError(f"{name}: expected real numbers, got dtype {array.dtype}")
+    return np.require(array, dtype, ("C_CONTIGUOUS", "ALIGNED"))
+
+
+def _scalar_first(array: Array, *, scalar_first: bool) -> Array:
+    return array if scalar_first else np.ascontiguousarray(np.roll(array, 1, axis=-1))
+
+
+def scalar_order(array: Array, *, scalar_first: bool) -> Array:
+    """Return quaternions that are scalar first in the order that the caller asked for."""
+    return array if scalar_first else np.ascontiguousarray(np.roll(array, -1, axis=-1))
+
+
+def quaternions(value: Any, name: str, *, scalar_first: bool = True) -> Array:
+    """Return `value` as an array ``(..., 4)``, scalar first."""
+    array = floats(value, name)
+    if array.ndim < 1 or array.shape[-1] != 4:
+        raise ValueError(f"{name}: expected shape (..., 4), got {array.shape}")
+    return _scalar_first(array, scalar_first=scalar_first)
+
+
+def vectors(value: Any, name: str) -> Array:
+    """Return `value` as an array ``(..., 3)``."""
+    array = floats(value, name)
+    if array.ndim < 1 or array.shape[-1] != 3:
+        raise ValueError(f"{name}: expected shape (..., 3), got {array.shape}")
+    return array
+
+
+def clip(value: Any, name: str = "rotations", *, scalar_first: bool = True) -> tuple[Array, int]:
+    """Return `value` as ``(frames, joints, 4)``, and how many of its samples are missing.
+
+    Raises
+    ------
+    ValueError
+        For another shape, and for samples that are neither missing nor near unit length.
+    """
+    array = quaternions(value, name, scalar_first=scalar_first)
+    if array.ndim not in (2, 3):
+        raise ValueError(f"{name}: expected shape (frames, joints, 4) or (frames, 4), got {array.shape}")
+    array = array.reshape(array.shape[0], -1 if array.size else math.prod(array.shape[1:-1]), 4)
+    missing, worst, index = _backend.ops().scan(array)
+    if worst > _FAR_FROM_UNIT:
+        frame, joint = divmod(index, array.shape[1])
+        norm = float(np.linalg.norm(array[frame, joint].astype(np.float64)))
+        raise ValueError(
+            f"{name}: expected unit quaternions, got norm {norm:.6g} at frame {frame}, joint {joint}",
+        )
+    return array, missing
+
+
+def pair(a: Array, b: Array, name_a: str, name_b: str) -> tuple[Array, Array]:
+    """Return two arrays of rows broadcast against each other, of one dtype, C-contiguous."""
+    dtype = np.result_type(a.dtype, b.dtype)
+    try:
+        shape = np.broadcast_shapes(a.shape, b.shape)
+    except ValueError:
+        raise ValueError(
+            f"{name_b}: expected a shape that broadcasts with {name_a}'s {a.shape}, got {b.shape}",
+        ) from None
+    return (
+        np.require(np.broadcast_to(a, shape), dtype, ("C_CONTIGUOUS", "ALIGNED")),
+        np.require(np.broadcast_to(b, shape), dtype, ("C_CONTIGUOUS", "ALIGNED")),
+    )
+
+
+def number(
+    value: Any,
+    name: str,
+    *,
+    above: float | None = None,
+    at_least: float | None = None,
+    at_most: float | None = None,
+) -> float:
+    """Return `value` as a finite float within its bounds."""
+    expected = "a number" + _bounds(above, at_least, at_most)
+    if isinstance(value, (bool, np.bool_, str)) or not np.isscalar(value):
+        raise TypeError(f"{name}: expected {expected}, got {type(value).__name__}")
+    try:
+        result = float(value)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: expected {expected}, got {type(value).__name__}") from None
+    if not math.isfinite(result) or not _within(result, above, at_least, at_most):
+        raise ValueError(f"{name}: expected {expected}, got {value}")
+    return result
+
+
+def integer(value: Any, name: str, *, at_least: int | None = None, at_most: int | None = None) -> int:
+    """Return `value` as an int within its bounds."""
+    expected = "an integer" + _bounds(None, at_least, at_most)
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
+        raise TypeError(f"{name}: expected {expected}, got {type(value).__name__}")
+    result = int(value)
+    if not _within(result, None, at_least, at_most):
+        raise ValueError(f"{name}: expected {expected}, got {value}")
+    return result
+
+
+def choice(value: Any, name: str, options: tuple[_Choice, ...]) -> _Choice:
+    """Return `value` if it is one of `options`."""
+    for option in options:
+        if value == option:
+            return option
+    raise ValueError(f"{name}: expected one of {', '.join(map(repr, options))}, got {value!r}")
+
+
+def per_joint(
+    value: Any,
+    name: str,
+    joints: int,
+    *,
+    above: float | None = None,
+    at_least: float | None = None,
+    at_most: float | None = None,
+) -> NDArray[np.float64]:
+    """Return a number, or one number per joint, as a float64 array ``(joints,)``."""
+    if np.isscalar(value):
+        return np.full(joints, number(value, name, above=above, at_least=at_least, at_most=at_most))
+    array = floats(value, name).astype(np.float64)
+    if array.ndim == 0:
+        return np.full(joints, number(array.item(), name, above=above, at_least=at_least, at_most=at_most))
+    if array.shape != (joints,):
+        raise ValueError(f"{name}: expected a number or one per joint, shape ({joints},), got {array.shape}")
+    for joint, one in enumerate(array):
+        number(one, f"{name}[{joint}]", above=above, at_least=at_least, at_most=at_most)
+    return array
+
+
+def confidence(value: ArrayLike | None, frames: int, joints: int, dtype: np.dtype[Any]) -> Array | None:
+    """Return `value`, ``(frames,)`` or ``(frames, joints)`` in 0…1, as ``(frames, joints)``; NaN counts as 0."""
+    if value is None:
+        return None
+    array = floats(value, "confidence")
+    if array.shape == (frames,):
+        array = np.repeat(array[:, None], joints, axis=1)
+    if array.shape != (frames, joints):
+        raise ValueError(
+            f"confidence: expected shape ({frames},) or ({frames}, {joints}), got {array.shape}",
+        )
+    array = np.where(np.isnan(array), 0, array)
+    if array.size and (array.min() < 0 or array.max() > 1):
+        worst = array.min() if array.min() < 0 else array.max()
+        raise ValueError(f"confidence: expected values from 0 to 1, got {worst}")
+    return np.require(array, dtype, ("C_CONTIGUOUS", "ALIGNED"))
+
+
+def _bounds(above: float | None, at_least: float | None, at_most: float | None) -> str:
+    parts = [
+        f"above {above:g}" if above is not None else "",
+        f"of at least {at_least:g}" if at_least is not None else "",
+        f"at most {at_most:g}" if at_most is not None else "",
+    ]
+    text = " and ".join(part for part in parts if part)
+    return f" {text}" if text else ""
+
+
+def _within(value: float, above: float | None, at_least: float | None, at_most: float | None) -> bool:
+    return (
+        (above is None or value > above)
+        and (at_least is None or value >= at_least)
+        and (at_most is None or value <= at_most)
+    )

@@ -1,0 +1,1 @@
+"""Unit quaternions: algebra, statistics and resampling."""

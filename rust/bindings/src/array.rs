@@ -1,0 +1,71 @@
+//! NumPy arrays in and out, and the way into the core.
+
+use numpy::{
+    Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
+    PyUntypedArrayMethods,
+};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use quatfilt_core::Error;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Calls `$body` with `$T` standing for the dtype of the array `$array`, float32 or float64.
+macro_rules! by_dtype {
+    ($array:expr, $T:ident => $body:expr) => {
+        if $crate::array::is_float32($array)? {
+            type $T = f32;
+            $body
+        } else {
+            type $T = f64;
+            $body
+        }
+    };
+}
+pub(crate) use by_dtype;
+
+/// Whether `array` holds float32; other dtypes than the two floats are met by [`input`].
+pub(crate) fn is_float32(array: &Bound<'_, PyAny>) -> PyResult<bool> {
+    let array = array.cast::<PyUntypedArray>()?;
+    Ok(array.dtype().is_equiv_to(&numpy::dtype::<f32>(array.py())))
+}
+
+/// Borrows an array that validation has made C-contiguous, aligned and native.
+pub(crate) fn input<'py, T: Element>(
+    name: &str,
+    array: &Bound<'py, PyAny>,
+) -> PyResult<PyReadonlyArrayDyn<'py, T>> {
+    let array = array.cast::<PyArrayDyn<T>>().map_err(|_| {
+        PyTypeError::new_err(format!("{name}: the dtype differs from that of the other arrays"))
+    })?;
+    array
+        .try_readonly()
+        .map_err(|_| PyValueError::new_err(format!("{name}: the array is being written elsewhere")))
+}
+
+/// The elements of a borrowed array.
+pub(crate) fn elements<'a, T: Element>(
+    name: &str,
+    array: &'a PyReadonlyArrayDyn<'_, T>,
+) -> PyResult<&'a [T]> {
+    array.as_slice().map_err(|_| PyValueError::new_err(format!("{name}: expected a C-contiguous array")))
+}
+
+/// A fresh array, owned by NumPy.
+pub(crate) fn output<'py, T: Element>(py: Python<'py>, shape: &[usize]) -> Bound<'py, PyArrayDyn<T>> {
+    PyArrayDyn::zeros(py, shape, false)
+}
+
+/// Runs `work` detached from the interpreter; errors and panics become Python exceptions.
+pub(crate) fn run<R: Send>(py: Python<'_>, work: impl FnOnce() -> Result<R, Error> + Send) -> PyResult<R> {
+    match py.detach(|| catch_unwind(AssertUnwindSafe(work))) {
+        Ok(result) => result.map_err(to_python),
+        Err(_) => Err(PyRuntimeError::new_err("quatfilt: a kernel failed; please report this as a bug")),
+    }
+}
+
+fn to_python(error: Error) -> PyErr {
+    match error {
+        Error::Interrupted => PyKeyboardInterrupt::new_err(()),
+        other => PyValueError::new_err(other.to_string()),
+    }
+}

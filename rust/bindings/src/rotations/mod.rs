@@ -1,0 +1,3 @@
+//! Rotations.
+
+pub(crate) mod quaternion;
