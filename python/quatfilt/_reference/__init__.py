@@ -1,0 +1,36 @@
+"""Every kernel in plain NumPy, written to be read: this package is the definition.
+
+The functions have the names and the positional arguments of those in the compiled `quatfilt._core`, and a test compares
+the two surfaces. Arguments are already validated: arrays are C-contiguous, in native byte order, float32 or float64.
+All arithmetic is in float64; results are rounded to the type of the input. Nothing writes to its inputs.
+
+Quaternions are Hamilton's, scalar first: `q = (w, x, y, z) = (cos φ, sin φ · u)` turns by the angle `2φ` about the unit
+axis `u`, and `q` and `−q` are the same rotation. A *missing* sample is a quaternion with a component that is not finite,
+or with four zeros.
+"""
+
+from quatfilt._reference.rotations.mean import mean
+from quatfilt._reference.rotations.quaternion import (
+    conjugate,
+    continuous,
+    exp,
+    geodesic_distance,
+    log,
+    multiply,
+    normalize,
+    scan,
+)
+from quatfilt._reference.rotations.resample import slerp
+
+__all__ = [
+    "conjugate",
+    "continuous",
+    "exp",
+    "geodesic_distance",
+    "log",
+    "mean",
+    "multiply",
+    "normalize",
+    "scan",
+    "slerp",
+]

@@ -1,0 +1,1 @@
+"""Quaternions, their means, and their interpolation in time."""
