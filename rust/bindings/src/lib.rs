@@ -3,11 +3,16 @@
 //! Each function has the name and the positional arguments of its definition in `quatfilt._reference`.
 
 mod array;
+mod filters;
 mod rotations;
 mod threads;
 
 #[pyo3::pymodule]
 mod _core {
+    #[pymodule_export]
+    use super::filters::nonlocal_pose_means::nonlocal_pose_means;
+    #[pymodule_export]
+    use super::rotations::mean::mean;
     #[pymodule_export]
     use super::rotations::quaternion::{conjugate, exp, geodesic_distance, log, multiply, normalize};
     #[pymodule_export]

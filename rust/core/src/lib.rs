@@ -15,10 +15,12 @@
 pub mod clip;
 pub mod elementary;
 pub mod error;
+pub mod filters;
 pub mod parallel;
 pub mod real;
 pub mod rotations;
 pub mod simd;
+pub mod window;
 
 pub use clip::{ClipMut, ClipView};
 pub use error::Error;

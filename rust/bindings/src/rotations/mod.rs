@@ -1,3 +1,4 @@
 //! Rotations.
 
+pub(crate) mod mean;
 pub(crate) mod quaternion;

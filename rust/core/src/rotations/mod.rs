@@ -1,3 +1,4 @@
 //! Unit quaternions: algebra, statistics and resampling.
 
+pub mod mean;
 pub mod quaternion;

@@ -1,0 +1,3 @@
+//! Filters: a clip in, a cleaner clip out.
+
+pub mod nonlocal_pose_means;
