@@ -12,6 +12,7 @@ or with four zeros.
 from quatfilt._reference.filters.gaps import fill_gaps
 from quatfilt._reference.filters.nonlocal_pose_means import nonlocal_pose_means
 from quatfilt._reference.motion.skeleton import forward_kinematics
+from quatfilt._reference.noise.noise import noise_level
 from quatfilt._reference.rotations.mean import mean
 from quatfilt._reference.rotations.quaternion import (
     conjugate,
@@ -35,6 +36,7 @@ __all__ = [
     "log",
     "mean",
     "multiply",
+    "noise_level",
     "nonlocal_pose_means",
     "normalize",
     "scan",
