@@ -3,7 +3,7 @@
 import numpy as np
 
 from quatfilt._reference._arrays import Indices, Mask, Reals
-from quatfilt._reference.rotations.quaternion import is_missing
+from quatfilt._reference.rotations.quaternion import continuous, is_missing
 from quatfilt._reference.rotations.resample import slerp
 
 
@@ -24,7 +24,7 @@ def fill_gaps(q: Reals, max_gap: int) -> tuple[Reals, Mask]:
     Returns
     -------
     rotations : array (frames, joints, 4)
-        Valid samples are as they were.
+        Continuous in sign from the first valid sample. The valid samples are otherwise as they were.
     filled : array (frames, joints) of bool
         Where samples have been filled in.
     """
@@ -37,13 +37,10 @@ def fill_gaps(q: Reals, max_gap: int) -> tuple[Reals, Mask]:
         if len(valid) == 0:
             continue
         for start, end in runs(missing[:, joint]):
-            if 0 <= max_gap < end - start:
-                continue
-            gap = np.arange(start, end)
-            times = np.clip(gap, valid[0], valid[-1])
-            result[gap, joint] = interpolate(q[valid, joint], valid, times)
-            filled[gap, joint] = True
-    return result, filled
+            filled[start:end, joint] = max_gap < 0 or end - start <= max_gap
+        gaps = np.flatnonzero(filled[:, joint])
+        result[gaps, joint] = interpolate(q[valid, joint], valid, np.clip(gaps, valid[0], valid[-1]))
+    return continuous(result), filled
 
 
 def runs(mask: Mask) -> list[tuple[int, int]]:

@@ -33,7 +33,7 @@ def noise_level(q: Reals) -> Reals:
     The mean over many clips of white noise is 2 % too high at 30 frames, 5 % at 20, 10 % at 12; from 40 to 2000 frames
     it is within 2 %. One clip's deviation from that is 20 % at 30 frames, 7 % at 200, 2 % at 2000. A swing of 60° to
     either side at 3 Hz and 30 frames per second, with noise of 0.016 rad, reads 1 % too low, where order 4 alone reads
-    11 % too high. What moves faster stays in: CMU's walks and dances at 30 frames per second read 2 to 9 % too high on
+    11 % too high. What moves faster stays in: CMU's walks and dances at 30 frames per second read 1 to 9 % too high on
     average over the joints with 0.016 rad, a run of 37 frames 24 %; all are within 4 % with 0.08 rad or more, and at
     120 frames per second.
 
