@@ -177,7 +177,7 @@ fn a_last_row_cut_short_is_dropped() {
     // Of three rows, the second may have lost digits of its last number.
     let file = motion("Frames: 3\nFrame Time: 1\n1 2 3\n4 5 6").unwrap();
     assert_eq!(file.values, [1.0, 2.0, 3.0]);
-    assert!(notes(&file)[0].contains("row 2 may be cut short"));
+    assert!(notes(&file)[0].contains("the file ends inside row 2"));
     // All rows are there: a missing line end means nothing.
     assert_eq!(motion("Frames: 2\nFrame Time: 1\n1 2 3\n4 5 6").unwrap().notes, []);
 }

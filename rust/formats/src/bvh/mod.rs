@@ -1,6 +1,6 @@
 //! Biovision hierarchy files (`.bvh`): a tree of joints, then one row of channel values per frame.
 //!
-//! [`parse`] reads the dialects that are in use, [`write`] makes files that it reads back as they were.
+//! [`parse`] reads the dialects that are in use, [`write()`] makes files that it reads back as they were.
 
 mod hierarchy;
 mod motion;

@@ -42,7 +42,7 @@ pub(super) fn parse(
             frames -= 1;
             values.truncate(frames * channels);
             notes.push(Note::whole(format!(
-                "the file ends without a line end before its last row: row {} may be cut short and is dropped",
+                "the file ends inside row {}, whose last number may have lost digits: dropped",
                 frames + 1
             )));
         }
