@@ -4,7 +4,6 @@ import sys
 from pathlib import Path
 
 import numpy as np
-
 import quatfilt as qf
 
 checkout = Path(sys.argv[1]).resolve()

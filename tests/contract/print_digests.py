@@ -4,9 +4,8 @@ import hashlib
 import sys
 
 import numpy as np
-from contract.public_calls import CALLS, samples
-
 import quatfilt as qf
+from contract.public_calls import CALLS, samples
 
 
 def main():

@@ -1,7 +1,6 @@
 """One call of every public function that computes, for tests that ask all of them the same question."""
 
 import numpy as np
-
 import quatfilt as qf
 
 NOT_KERNELS = {

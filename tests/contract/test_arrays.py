@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
-
 import quatfilt as qf
+from scipy.spatial.transform import Rotation
 
 UNARY = {
     "conjugate": (qf.conjugate, 4),

@@ -8,9 +8,8 @@ import warnings
 
 import numpy as np
 import pytest
-from contract.public_calls import CALLS, samples
-
 import quatfilt as qf
+from contract.public_calls import CALLS, samples
 
 LIMIT = 60
 """Seconds after which a child counts as hanging; it needs a fraction of one."""
@@ -67,7 +66,10 @@ def test_a_child_computes_after_its_parent_did():
 def test_a_grandchild_computes():
     arguments = samples(np.float32)
     expected = digest(arguments)
-    assert forked(lambda: digest(arguments) == expected and forked(lambda: digest(arguments) == expected) == 0) == 0
+    assert (
+        forked(lambda: digest(arguments) == expected and forked(lambda: digest(arguments) == expected) == 0)
+        == 0
+    )
 
 
 def test_the_number_of_threads_can_change_in_a_child():

@@ -6,9 +6,8 @@ import sys
 from pathlib import Path
 
 import pytest
-from contract.public_calls import CALLS, NOT_KERNELS
-
 import quatfilt as qf
+from contract.public_calls import CALLS, NOT_KERNELS
 
 TESTS = Path(__file__).parents[1]
 

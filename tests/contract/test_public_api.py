@@ -5,7 +5,6 @@ import inspect
 import types
 
 import pytest
-
 import quatfilt as qf
 
 FIXED = """

@@ -6,9 +6,8 @@ import time
 
 import numpy as np
 import pytest
-from contract.public_calls import CALLS, samples
-
 import quatfilt as qf
+from contract.public_calls import CALLS, samples
 from quatfilt import _core
 
 
