@@ -244,3 +244,19 @@ def test_it_removes_noise(backend, chart):
     )
     before, after = (np.sqrt(np.mean(clips.angles(clean, x) ** 2)) for x in (q, result))
     assert after < 2 / 3 * before
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize(
+    ("distance", "moves"), [(1, True), (80, True), (119, True), (121, False), (300, False)]
+)
+def test_an_untrusted_frame_follows_others_however_faint_down_to_one_limit(backend, dtype, distance, moves):
+    """In a steady turn, seen with its past alone, frame 3 has one candidate, frame 2, at a known patch distance."""
+    step = 0.25
+    q = clips.from_vectors(step * np.arange(6)[:, None, None] * np.array([0.6, 0.8, 0])).astype(dtype)
+    confidence = np.ones((6, 1))
+    confidence[3] = 0
+    chosen = {"search_radius": 1, "patch_radius": 1, "lookahead": 0, "distance": "sum", "chart": "local"}
+    bandwidth = step / np.sqrt(2 * distance)
+    result = nlpm.rotations(backend, q, confidence=confidence, bandwidth=bandwidth, **chosen)
+    assert clips.angles(result[3], q[2] if moves else q[3]) < tolerances.filtered(dtype)
