@@ -11,7 +11,11 @@ from quatfilt._core import is_debug_build as _is_debug_build
 from quatfilt.rotations.quaternion import conjugate, exp, geodesic_distance, log, multiply, normalize
 
 if _is_debug_build():
-    warnings.warn("quatfilt was built without optimisation: it is ten times slower than it should be", RuntimeWarning, stacklevel=2)
+    warnings.warn(
+        "quatfilt was built without optimisation: it is ten times slower than it should be",
+        RuntimeWarning,
+        stacklevel=2,
+    )
 
 __all__ = [
     "conjugate",

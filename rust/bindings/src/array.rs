@@ -6,7 +6,7 @@ use numpy::{
 };
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use quatfilt_core::Error;
+use quatfilt_core::{ClipView, Error, Real};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Calls `$body` with `$T` standing for the dtype of the array `$array`, float32 or float64.
@@ -48,6 +48,20 @@ pub(crate) fn elements<'a, T: Element>(
     array: &'a PyReadonlyArrayDyn<'_, T>,
 ) -> PyResult<&'a [T]> {
     array.as_slice().map_err(|_| PyValueError::new_err(format!("{name}: expected a C-contiguous array")))
+}
+
+/// A borrowed clip `(frames, joints, 4)`.
+pub(crate) fn clip<'a, T: Real + Element>(
+    name: &str,
+    array: &'a PyReadonlyArrayDyn<'_, T>,
+) -> PyResult<ClipView<'a, T>> {
+    let &[frames, joints, 4] = array.shape() else {
+        return Err(PyValueError::new_err(format!(
+            "{name}: expected shape (frames, joints, 4), got {:?}",
+            array.shape()
+        )));
+    };
+    ClipView::new(elements(name, array)?, frames, joints).map_err(to_python)
 }
 
 /// A fresh array, owned by NumPy.
