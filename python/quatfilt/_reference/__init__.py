@@ -9,6 +9,10 @@ axis `u`, and `q` and `−q` are the same rotation. A *missing* sample is a quat
 or with four zeros.
 """
 
+from quatfilt._reference.filters.gaps import fill_gaps
+from quatfilt._reference.filters.nonlocal_pose_means import nonlocal_pose_means
+from quatfilt._reference.motion.skeleton import forward_kinematics
+from quatfilt._reference.noise.noise import noise_level
 from quatfilt._reference.rotations.mean import mean
 from quatfilt._reference.rotations.quaternion import (
     conjugate,
@@ -26,10 +30,14 @@ __all__ = [
     "conjugate",
     "continuous",
     "exp",
+    "fill_gaps",
+    "forward_kinematics",
     "geodesic_distance",
     "log",
     "mean",
     "multiply",
+    "noise_level",
+    "nonlocal_pose_means",
     "normalize",
     "scan",
     "slerp",

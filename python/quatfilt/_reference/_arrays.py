@@ -10,3 +10,6 @@ Reals = NDArray[np.floating[Any]]
 
 Mask = NDArray[np.bool_]
 """An array of truth values."""
+
+Indices = NDArray[np.intp]
+"""An array of indices or of lags."""

@@ -15,7 +15,8 @@ ZERO_SINE = np.sqrt(np.finfo(np.float64).tiny)
 
 def norm(x: Reals) -> Reals:
     """Euclidean length of the vectors along the last axis."""
-    return np.sqrt(np.sum(x * x, axis=-1))
+    length: Reals = np.sqrt(np.sum(x * x, axis=-1))
+    return length
 
 
 def multiply(a: Reals, b: Reals) -> Reals:
@@ -97,7 +98,8 @@ def geodesic_distance(a: Reals, b: Reals) -> Reals:
 
 def is_missing(q: Reals) -> Mask:
     """Tell the missing samples, those with a component that is not finite or with four zeros: `(..., 4)` → `(...)`."""
-    return ~np.isfinite(q).all(axis=-1) | (q == 0).all(axis=-1)
+    missing: Mask = ~np.isfinite(q).all(axis=-1) | (q == 0).all(axis=-1)
+    return missing
 
 
 def continuous(q: Reals) -> Reals:
