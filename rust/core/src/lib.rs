@@ -12,6 +12,8 @@
 //! Hot kernels are maps over frames on aligned planes: no libm, no fused multiply-add and no horizontal sums, so
 //! that the bits are the same at every SIMD level and for every number of threads.
 
+#![cfg_attr(test, allow(clippy::float_cmp, reason = "tests say exactly what they expect"))]
+
 pub mod clip;
 pub mod elementary;
 pub mod error;
