@@ -1,12 +1,12 @@
 //! NumPy arrays in and out, and the way into the core.
 
 use numpy::{
-    Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
-    PyUntypedArrayMethods,
+    Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
+    PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use quatfilt_core::{ClipView, Error, Real};
+use quatfilt_core::{ClipMut, ClipView, Error, Real};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Calls `$body` with `$T` standing for the dtype of the array `$array`, float32 or float64.
@@ -62,6 +62,15 @@ pub(crate) fn clip<'a, T: Real + Element>(
         )));
     };
     ClipView::new(elements(name, array)?, frames, joints).map_err(to_python)
+}
+
+/// A borrowed clip `(frames, joints, 4)` to be written.
+pub(crate) fn clip_mut<'a, T: Real + Element>(
+    array: &'a mut PyReadwriteArrayDyn<'_, T>,
+    frames: usize,
+    joints: usize,
+) -> PyResult<ClipMut<'a, T>> {
+    ClipMut::new(array.as_slice_mut()?, frames, joints).map_err(to_python)
 }
 
 /// A fresh array, owned by NumPy.

@@ -9,6 +9,8 @@ mod threads;
 #[pyo3::pymodule]
 mod _core {
     #[pymodule_export]
+    use super::rotations::continuity::continuous;
+    #[pymodule_export]
     use super::rotations::quaternion::{conjugate, exp, geodesic_distance, log, multiply, normalize, scan};
     #[pymodule_export]
     use super::threads::{get_num_threads, is_debug_build, set_num_threads, simd_level};

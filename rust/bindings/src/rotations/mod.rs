@@ -1,3 +1,4 @@
 //! Rotations.
 
+pub(crate) mod continuity;
 pub(crate) mod quaternion;

@@ -1,3 +1,4 @@
 //! Unit quaternions: algebra, statistics and resampling.
 
+pub mod continuity;
 pub mod quaternion;
