@@ -2,3 +2,4 @@
 
 pub(crate) mod continuity;
 pub(crate) mod quaternion;
+pub(crate) mod resample;

@@ -3,7 +3,7 @@
 //! Each tile of frames is made continuous by itself; the sign of a whole tile follows from its first sample and the
 //! last one of the tiles before it. Signs are exact, so the result does not depend on the tiles.
 
-use super::quaternion::{dot, is_missing, negative};
+use super::quaternion::{dot, is_missing, negative, of_row};
 use crate::error::check_length;
 use crate::simd::multiversion;
 use crate::{ClipMut, ClipView, Error, Real, parallel};
@@ -23,17 +23,12 @@ fn opposite<T: Real>(a: [T; 4], b: [T; 4]) -> bool {
     dot(a.map(T::to_f64), b.map(T::to_f64)) < 0.0
 }
 
-#[inline(always)]
-fn quaternion<T: Real>(row: &[T]) -> [T; 4] {
-    [row[0], row[1], row[2], row[3]]
-}
-
 multiversion! {
     /// Makes `out` continuous, frame by frame; `last` holds the valid samples before, and those of the end afterwards.
     fn unroll<T: Real>(out: &mut [T], last: &mut [[T; 4]]) {
         for frame in out.chunks_exact_mut(last.len() * 4) {
             for (row, last) in frame.chunks_exact_mut(4).zip(last.iter_mut()) {
-                let q = quaternion(row);
+                let q = of_row(row);
                 let missing = is_missing(q);
                 let flip = !missing & opposite(q, *last);
                 let turned = negative(q);
@@ -50,7 +45,7 @@ multiversion! {
 /// The first valid sample of each joint.
 fn first_valid<T: Real>(tile: &[T], joints: usize) -> Vec<[T; 4]> {
     let one = |joint: usize| {
-        let path = tile.chunks_exact(joints * 4).map(|frame| quaternion(&frame[joint * 4..]));
+        let path = tile.chunks_exact(joints * 4).map(|frame| of_row(&frame[joint * 4..]));
         path.into_iter().find(|&q| !is_missing(q)).unwrap_or_default()
     };
     (0..joints).map(one).collect()
@@ -92,7 +87,7 @@ fn unroll_tiles<T: Real>(source: Option<&[T]>, clip: &mut [T], joints: usize) ->
     parallel::for_each(turned, samples * 2, |_, (tile, flips)| {
         for frame in tile.chunks_exact_mut(row) {
             for (row, &flip) in frame.chunks_exact_mut(4).zip(&flips) {
-                let q = quaternion(row);
+                let q = of_row(row);
                 if flip & !is_missing(q) {
                     row.copy_from_slice(&negative(q));
                 }

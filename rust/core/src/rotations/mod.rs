@@ -2,3 +2,4 @@
 
 pub mod continuity;
 pub mod quaternion;
+pub mod resample;

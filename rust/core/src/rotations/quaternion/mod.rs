@@ -13,7 +13,7 @@ mod scan;
 
 pub use one::{
     angle_between, between, conjugate_one, dot, exp_one, geodesic, is_missing, log_one, log_short, negative,
-    product, rotate, unit,
+    of_row, product, rotate, unit,
 };
 pub use rows::{conjugate, exp, geodesic_distance, log, multiply, normalize};
 pub use scan::{Scan, scan};

@@ -2,6 +2,13 @@
 
 use crate::Real;
 
+/// The quaternion in the first four elements of `row`.
+#[inline(always)]
+#[must_use]
+pub fn of_row<T: Real>(row: &[T]) -> [T; 4] {
+    [row[0], row[1], row[2], row[3]]
+}
+
 /// Hamilton product `a·b`: first the rotation `b`, then `a`.
 #[inline(always)]
 #[must_use]

@@ -1,6 +1,6 @@
 //! What is wrong with a clip: missing samples, and the one that is farthest from unit length.
 
-use super::one::{dot, is_missing};
+use super::one::{dot, is_missing, of_row};
 use crate::simd::multiversion;
 use crate::{ClipView, Error, Real, parallel};
 
@@ -50,17 +50,12 @@ impl<T: Real> Extremes<T> {
     }
 }
 
-#[inline(always)]
-fn quaternion<T: Real>(row: &[T]) -> [T; 4] {
-    [row[0], row[1], row[2], row[3]]
-}
-
 /// Squared lengths that are 0 or infinite look alike for missing samples and for absurd ones: this asks each component.
 #[inline(always)]
 fn carefully<T: Real>(rows: &[T]) -> Extremes<T> {
     let mut found = Extremes::none();
     for row in rows.chunks_exact(4) {
-        let q = quaternion(row);
+        let q = of_row(row);
         let square = dot(q, q);
         if is_missing(q) {
             found.missing += 1;
@@ -83,7 +78,7 @@ multiversion! {
             let rest = carefully(groups.remainder());
             for group in groups {
                 for lane in 0..LANES {
-                    let q = quaternion(&group[lane * 4..lane * 4 + 4]);
+                    let q = of_row(&group[lane * 4..lane * 4 + 4]);
                     let square = dot(q, q);
                     high[lane] = square.max(high[lane]);
                     low[lane] = square.min(low[lane]);
@@ -114,9 +109,9 @@ fn locate<T: Real>(
 ) -> (f64, usize) {
     let tile = tiles.iter().position(|tile| of(tile) == square).unwrap_or(0);
     let rows = &q[tile * TILE * 4..];
-    let first = rows.chunks_exact(4).map(quaternion).position(|q| dot(q, q) == square && !is_missing(q));
+    let first = rows.chunks_exact(4).map(of_row).position(|q| dot(q, q) == square && !is_missing(q));
     let index = tile * TILE + first.unwrap_or(0);
-    (deviation(quaternion(&q[index * 4..])), index)
+    (deviation(of_row(&q[index * 4..])), index)
 }
 
 fn deviation<T: Real>(q: [T; 4]) -> f64 {
@@ -127,7 +122,7 @@ fn deviation<T: Real>(q: [T; 4]) -> f64 {
 /// The worst of all samples where a squared length overflowed: by every deviation in float64.
 #[cold]
 fn worst_of_absurd<T: Real>(q: &[T]) -> (f64, usize) {
-    let samples = q.chunks_exact(4).map(quaternion).enumerate().filter(|&(_, q)| !is_missing(q));
+    let samples = q.chunks_exact(4).map(of_row).enumerate().filter(|&(_, q)| !is_missing(q));
     samples.fold((0.0, 0), |worst, (index, q)| {
         let this = deviation(q);
         if this > worst.0 { (this, index) } else { worst }

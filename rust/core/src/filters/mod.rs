@@ -1,0 +1,3 @@
+//! Filters of clips of rotations.
+
+pub mod gaps;
