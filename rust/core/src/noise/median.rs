@@ -54,11 +54,12 @@ multiversion! {
     /// How many absolute values lie below `low`; those from `low` to `high` are kept.
     fn bracket<T: Real>(values: &[T], low: T, high: T, kept: &mut Vec<T>) -> usize {
         kept.resize(values.len() + 1, T::ZERO);
+        let (lowest, width) = (low.rank(), high.rank() - low.rank());
         let mut next = 0;
         for &x in values {
-            let x = x.abs();
-            kept[next] = x;
-            next += usize::from((x >= low) & (x <= high));
+            kept[next] = x.abs();
+            // One comparison of whole numbers, where two of floats would go through mask registers.
+            next += usize::from(x.rank().wrapping_sub(lowest) <= width);
         }
         kept.truncate(next);
         count(values, |x| x.abs() < low)

@@ -3,7 +3,7 @@
 use super::median::median_of_absolute;
 use crate::clip::Planes;
 use crate::error::check_length;
-use crate::rotations::quaternion::{between, dot, log_short};
+use crate::rotations::quaternion::{between, dot, log_short, of_row};
 use crate::simd::multiversion;
 use crate::{ClipView, Error, Real, parallel};
 
@@ -31,17 +31,18 @@ multiversion! {
         for start in (0..steps).step_by(CHUNK) {
             let length = CHUNK.min(steps - start);
             let rows = &q.data()[start * row..(start + length + 1) * row];
-            let mut samples = [[T::ONE; CHUNK + 1]; GROUP * 4];
-            for (i, row) in rows.chunks_exact(row).enumerate() {
-                for (plane, &x) in samples.iter_mut().zip(&row[first * 4..(first + joints) * 4]) {
-                    plane[i] = x;
-                }
-            }
             for joint in 0..joints {
+                let mut samples = [[T::ONE; CHUNK + 1]; 4];
+                for (i, row) in rows.chunks_exact(row).enumerate() {
+                    let q = of_row(&row[(first + joint) * 4..]);
+                    for c in 0..4 {
+                        samples[c][i] = q[c];
+                    }
+                }
                 let mut steps = [[T::ZERO; CHUNK]; 3];
                 for i in 0..CHUNK {
-                    let a = std::array::from_fn(|c| samples[joint * 4 + c][i]);
-                    let b = std::array::from_fn(|c| samples[joint * 4 + c][i + 1]);
+                    let a = std::array::from_fn(|c| samples[c][i]);
+                    let b = std::array::from_fn(|c| samples[c][i + 1]);
                     let lengths = dot(a, a) * dot(b, b);
                     let valid = (lengths > T::ZERO) & lengths.is_finite();
                     let step = log_short(between(a, b));
