@@ -9,6 +9,9 @@ import math
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+CLOSE = 1e-12
+"""Relative difference of patch distances that rounding can explain."""
+
 
 def rotation(q):
     return Rotation.from_quat(q, scalar_first=True)
@@ -124,7 +127,11 @@ def direct_nonlocal_pose_means(
     boundary,
     lookahead,
 ):
-    """Rotations as a SciPy object of shape (frames · joints), and positions or None."""
+    """Rotations as a SciPy object of shape (frames · joints), positions or None, and where the answer is ambiguous.
+
+    Where two candidates are equally good but for rounding, and only one of them may be kept, either answer is right:
+    ``ambiguous`` is a mask (frames, joints).
+    """
     frames, joints = q.shape[:2]
     reach = patch_radius + max(search_radius, 0)
     clip = [ExtendedJoint(q[:, j], chart, boundary, reach) for j in range(joints)]
@@ -159,17 +166,21 @@ def direct_nonlocal_pose_means(
     def weights_of(t, group):
         likeness = {s: patch_distance(t, s, group) for s in candidates(t)}
         best = sorted(likeness, key=lambda s: (likeness[s], abs(s - t), s))
-        if neighbors >= 0:
+        unclear = False
+        if 0 <= neighbors < len(best):
+            last, next_one = likeness[best[neighbors - 1]], likeness[best[neighbors]]
+            unclear = last < math.inf and math.isclose(last, next_one, rel_tol=CLOSE)
             best = best[:neighbors]
         result = {s: math.exp(-likeness[s]) for s in best}
         result[t] = max([*result.values(), math.exp(-80)])
-        return result
+        return result, unclear
 
     rotations, positions = [], []
+    ambiguous = np.zeros((frames, joints), bool)
     groups = [range(joints)] * joints if weights == "pose" else [[j] for j in range(joints)]
     for t in range(frames):
         for j in range(joints):
-            f = weights_of(t, groups[j])
+            f, ambiguous[t, j] = weights_of(t, groups[j])
             total = sum(weight * trust(s, j) for s, weight in f.items())
             vector = np.zeros(3)
             if total > 0:
@@ -180,4 +191,5 @@ def direct_nonlocal_pose_means(
                 if total > 0:
                     position = sum(w * trust(s, 0) * place(s) for s, w in f.items()) / total
                 positions.append(position)
-    return Rotation.from_quat(np.array(rotations)), None if translation is None else np.array(positions)
+    positions = None if translation is None else np.array(positions)
+    return Rotation.from_quat(np.array(rotations)), positions, ambiguous

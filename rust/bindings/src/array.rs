@@ -6,8 +6,11 @@ use numpy::{
 };
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use quatfilt_core::parallel::Interrupt;
 use quatfilt_core::{ClipMut, ClipView, Error, Real};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::RecvTimeoutError;
+use std::time::Duration;
 
 /// Calls `$body` with `$T` standing for the dtype of the array `$array`, float32 or float64.
 macro_rules! by_dtype {
@@ -78,11 +81,14 @@ pub(crate) fn output<'py, T: Element>(py: Python<'py>, shape: &[usize]) -> Bound
     PyArrayDyn::zeros(py, shape, false)
 }
 
+/// What a user reads where a kernel panicked.
+const BUG: &str = "quatfilt: a kernel failed; please report this as a bug";
+
 /// Runs `work` detached from the interpreter; errors and panics become Python exceptions.
 pub(crate) fn run<R: Send>(py: Python<'_>, work: impl FnOnce() -> Result<R, Error> + Send) -> PyResult<R> {
     match py.detach(|| catch_unwind(AssertUnwindSafe(work))) {
         Ok(result) => result.map_err(to_python),
-        Err(_) => Err(PyRuntimeError::new_err("quatfilt: a kernel failed; please report this as a bug")),
+        Err(_) => Err(PyRuntimeError::new_err(BUG)),
     }
 }
 
@@ -90,5 +96,50 @@ fn to_python(error: Error) -> PyErr {
     match error {
         Error::Interrupted => PyKeyboardInterrupt::new_err(()),
         other => PyValueError::new_err(other.to_string()),
+    }
+}
+
+/// Estimated nanoseconds from which a call listens for Ctrl-C: a thread of its own costs some 50 microseconds.
+const PATIENCE: usize = 200_000_000;
+
+/// How often a long call asks whether Ctrl-C was pressed.
+const POLL: Duration = Duration::from_millis(50);
+
+/// Runs `work` as [`run`] does; work that is estimated to take long stops at its next tile after Ctrl-C.
+pub(crate) fn run_interruptible<R: Send>(
+    py: Python<'_>,
+    nanoseconds: usize,
+    work: impl FnOnce(&Interrupt) -> Result<R, Error> + Send,
+) -> PyResult<R> {
+    let interrupt = Interrupt::new();
+    if nanoseconds < PATIENCE {
+        return run(py, || work(&interrupt));
+    }
+    let mut signal = Ok(());
+    let result = py.detach(|| {
+        std::thread::scope(|scope| {
+            let (done, finished) = std::sync::mpsc::channel();
+            let interrupt = &interrupt;
+            let worker = scope.spawn(move || {
+                let result = catch_unwind(AssertUnwindSafe(|| work(interrupt)));
+                // The receiver lives until the scope ends.
+                let _ = done.send(());
+                result
+            });
+            while let Err(RecvTimeoutError::Timeout) = finished.recv_timeout(POLL) {
+                if signal.is_ok() {
+                    signal = Python::attach(|py| py.check_signals());
+                    if signal.is_err() {
+                        interrupt.set();
+                    }
+                }
+            }
+            worker.join()
+        })
+    });
+    signal?;
+    match result {
+        Ok(Ok(result)) => result.map_err(to_python),
+        _ => Err(PyRuntimeError::new_err(BUG)),
     }
 }

@@ -14,11 +14,15 @@ mod _core {
     #[pymodule_export]
     use super::filters::gaps::fill_gaps;
     #[pymodule_export]
+    use super::filters::nonlocal_pose_means::nonlocal_pose_means;
+    #[pymodule_export]
     use super::motion::skeleton::forward_kinematics;
     #[pymodule_export]
     use super::noise::noise::noise_level;
     #[pymodule_export]
     use super::rotations::continuity::continuous;
+    #[pymodule_export]
+    use super::rotations::mean::mean;
     #[pymodule_export]
     use super::rotations::quaternion::{conjugate, exp, geodesic_distance, log, multiply, normalize, scan};
     #[pymodule_export]

@@ -27,6 +27,7 @@ pub mod parallel;
 pub mod real;
 pub mod rotations;
 pub mod simd;
+pub mod window;
 
 pub use clip::{ClipMut, ClipView};
 pub use error::Error;

@@ -1,0 +1,197 @@
+//! Non-local pose means: each pose becomes a mean of the poses whose neighbourhood in time looks alike.
+//!
+//! C. J. Dean and J. P. Lewis, "Non-local pose means for denoising motion capture data". With `x_t` the poses as
+//! rotation vectors in a chart, patches `P_t = (x_{t−r} … x_{t+r})` and the learning window `|s − t| ≤ k`:
+//!
+//! ```text
+//! f(t, s) = exp(−‖P_s − P_t‖² / 2h²)      s ≠ t;  the square is a mean over the patch's frames and coordinates
+//! f(t, t) = max(max_s f(t, s), e⁻⁸⁰)
+//! x̂_t     = Σ f(t, s) x_s / Σ f(t, s)
+//! ```
+//!
+//! Along one lag `ℓ = s − t` the patch distance is a sliding sum of per-frame distances, so the cost does not grow with
+//! the patch, and lag `ℓ` serves lag `−ℓ`. The clip is worked through in tiles of frames, in parallel; a tile holds its
+//! own planes, so memory beyond input and output is a byte per sample and a few hundred kB per thread.
+//!
+//! - `path`: the sign-continuous path of each joint and the chart that holds it;
+//! - `tile`: one tile, loaded into planes, and the pairs of frames that matter to it;
+//! - `likeness`: patch distances and weights;
+//! - `means`: weighted means, and back to quaternions;
+//! - `nearest`: only the most similar patches count;
+//! - `kernels`: the vectorised loops.
+
+mod kernels;
+mod likeness;
+mod means;
+mod nearest;
+mod path;
+mod tile;
+
+use crate::error::check_length;
+use crate::parallel::{self, Interrupt};
+use crate::window::{Boundary, Extended};
+use crate::{ClipView, Error, Real};
+use path::Paths;
+use tile::{Clip, Tile};
+
+/// Where rotations become vectors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Chart {
+    /// The sign-continuous path at each joint's Karcher mean; a joint that turns too far uses [`Chart::Local`].
+    Mean,
+    /// The sign-continuous path at the identity: the paper's.
+    Identity,
+    /// Each pair of frames at one of them.
+    Local,
+}
+
+/// What shares weights.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Weights {
+    /// All joints of a pose.
+    Pose,
+    /// Nothing: each joint finds its own repetitions.
+    Joint,
+}
+
+/// How squares are put together to a patch distance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Distance {
+    /// Mean over the patch's frames and coordinates.
+    Mean,
+    /// Sum: the printed equation.
+    Sum,
+}
+
+/// The parameters of the filter.
+#[derive(Debug, Clone)]
+pub struct NonlocalPoseMeans {
+    /// Radius of the learning window in frames; `None` for the whole clip.
+    pub search_radius: Option<usize>,
+    /// Radius of a patch in frames.
+    pub patch_radius: usize,
+    /// Bandwidth per joint: radians of rotation per coordinate.
+    pub bandwidth: Vec<f64>,
+    /// Mean or sum of squares.
+    pub distance: Distance,
+    /// What shares weights.
+    pub weights: Weights,
+    /// How many of the most similar patches count; `None` for all.
+    pub neighbors: Option<usize>,
+    /// Where rotations become vectors.
+    pub chart: Chart,
+    /// How the clip goes on beyond its ends.
+    pub boundary: Boundary,
+    /// How many later frames may be touched; `None` for as many as the window asks for.
+    pub lookahead: Option<usize>,
+}
+
+/// The root's translation that is filtered along, with the weights of the pose (or of the first joint).
+#[derive(Debug)]
+pub struct Translation<'a, T> {
+    /// `(frames, 3)`.
+    pub values: &'a [T],
+    /// `(frames, 3)`, to be written.
+    pub out: &'a mut [T],
+}
+
+/// The reach of the window, settled.
+#[derive(Debug, Clone, Copy)]
+struct Reach {
+    /// Earlier frames that are candidates.
+    back: usize,
+    /// Later frames that are candidates.
+    ahead: usize,
+    /// Frames of a patch before its centre.
+    before: usize,
+    /// Frames of a patch after its centre.
+    after: usize,
+    /// Frames added to the clip at each end.
+    pad: usize,
+    /// Whether added frames are candidates.
+    added: bool,
+}
+
+impl NonlocalPoseMeans {
+    fn reach(&self, frames: usize) -> Reach {
+        let window = self.search_radius.unwrap_or_else(|| frames.saturating_sub(1));
+        let after = self.patch_radius.min(self.lookahead.unwrap_or(usize::MAX));
+        Reach {
+            back: window,
+            ahead: window.min(self.lookahead.map_or(usize::MAX, |ahead| ahead - after)),
+            before: self.patch_radius,
+            after,
+            pad: self.patch_radius + self.search_radius.unwrap_or(0),
+            added: self.search_radius.is_some(),
+        }
+    }
+
+    /// Filters `clip` along time into `out`, `(frames, joints, 4)`, sign-continuous from the hemisphere of the first frame.
+    ///
+    /// No sample may be missing. `confidence`, `(frames, joints)` in 0…1, weighs samples in patch distances and in means.
+    /// Quaternions need not have length 1 exactly.
+    ///
+    /// # Errors
+    /// [`Error::Length`] if slices do not fit together; [`Error::Interrupted`].
+    pub fn filter<T: Real>(
+        &self,
+        clip: ClipView<'_, T>,
+        confidence: Option<&[T]>,
+        translation: Option<Translation<'_, T>>,
+        out: &mut [T],
+        interrupt: &Interrupt,
+    ) -> Result<(), Error> {
+        let (frames, joints) = (clip.frames(), clip.joints());
+        check_length("out", clip.data().len(), out.len())?;
+        check_length("bandwidth", joints, self.bandwidth.len())?;
+        if let Some(confidence) = confidence {
+            check_length("confidence", frames * joints, confidence.len())?;
+        }
+        let (moved, moved_out) = match translation {
+            Some(Translation { values, out }) => {
+                check_length("translation", frames * 3, values.len())?;
+                check_length("translation out", frames * 3, out.len())?;
+                (Some(values), out)
+            }
+            None => (None, &mut [][..]),
+        };
+        if frames == 0 || joints == 0 {
+            moved_out.copy_from_slice(moved.unwrap_or_default());
+            return Ok(());
+        }
+        let reach = self.reach(frames);
+        let extended = Extended::new(clip, reach.pad, self.boundary);
+        let paths = Paths::new(clip, &extended, self.chart, interrupt)?;
+        let shared = Clip {
+            filter: self,
+            extended: &extended,
+            paths: &paths,
+            confidence,
+            translation: moved,
+            reach,
+            frames,
+        };
+        let length = shared.tile_length();
+        let moved_columns = if moved.is_some() { 3 } else { 0 };
+        let tiles: Vec<(&mut [T], &mut [T])> = out
+            .chunks_mut(length * joints * 4)
+            .zip(chunks_or_empty(moved_out, length * moved_columns))
+            .collect();
+        let work = frames * joints * (20 + 2 * (reach.back.min(frames) + reach.ahead.min(frames)));
+        parallel::for_each(tiles, work, |index, (out, moved_out)| {
+            let first = index * length;
+            Tile::new(&shared, first, (first + length).min(frames), interrupt)?
+                .filter(out, moved_out, interrupt)
+        })?;
+        paths.connect(clip, out)
+    }
+}
+
+/// Chunks of a slice, or for ever empty ones.
+fn chunks_or_empty<T>(slice: &mut [T], length: usize) -> Box<dyn Iterator<Item = &mut [T]> + '_> {
+    if length == 0 {
+        Box::new(std::iter::repeat_with(|| &mut [][..]))
+    } else {
+        Box::new(slice.chunks_mut(length))
+    }
+}

@@ -1,0 +1,283 @@
+//! One tile of frames: from quaternions to planes, weights, means, and back to quaternions.
+
+use super::kernels::{self, LANE};
+use super::likeness::Likeness;
+use super::means::Means;
+use super::nearest::Nearest;
+use super::path::{JointChart, Paths};
+use super::{NonlocalPoseMeans, Reach, Weights};
+use crate::clip::Planes;
+use crate::parallel::Interrupt;
+use crate::rotations::quaternion::conjugate_one;
+use crate::window::{Boundary, Extended, extended_number};
+use crate::{Error, Real};
+use std::ops::Range;
+
+/// Bytes of planes that a tile should stay within: half of a common second-level cache.
+const TILE_BYTES: usize = 256 * 1024;
+
+/// Frames of a tile, at least and at most, where its surroundings do not ask for more.
+const TILE_FRAMES: Range<usize> = 128..2048;
+
+/// Lags that are weighed before their samples are added.
+const BLOCK_LAGS: usize = 16;
+
+/// What all tiles share.
+#[derive(Debug)]
+pub(super) struct Clip<'a, T> {
+    pub(super) filter: &'a NonlocalPoseMeans,
+    pub(super) extended: &'a Extended<'a, T>,
+    pub(super) paths: &'a Paths<T>,
+    pub(super) confidence: Option<&'a [T]>,
+    pub(super) translation: Option<&'a [T]>,
+    pub(super) reach: Reach,
+    pub(super) frames: usize,
+}
+
+impl<T: Real> Clip<'_, T> {
+    /// Frames per tile: what fits into the cache, but no less than twice the surroundings that are loaded with it.
+    pub(super) fn tile_length(&self) -> usize {
+        let row = self.extended.joints() * 4 * size_of::<T>();
+        let fitting = (TILE_BYTES / row).clamp(TILE_FRAMES.start, TILE_FRAMES.end);
+        let around = if self.reach.added {
+            self.reach.back + self.reach.ahead + self.reach.before + self.reach.after
+        } else {
+            0
+        };
+        fitting.max(2 * around).next_multiple_of(LANE)
+    }
+}
+
+/// Pairs `(u, u + lag)` of frames, counted in planes, and what they serve.
+#[derive(Debug)]
+pub(super) struct Piece {
+    /// The earlier frames of the pairs.
+    pub(super) pairs: Range<usize>,
+    /// Where the later frame is the candidate.
+    pub(super) forward: Option<Side>,
+    /// Where the earlier frame is the candidate.
+    pub(super) backward: Option<Side>,
+}
+
+/// Some pairs of a [`Piece`], and the frames of the tile that they serve.
+#[derive(Debug)]
+pub(super) struct Side {
+    /// Counted from the first pair.
+    pub(super) pairs: Range<usize>,
+    /// Counted from the tile's first frame.
+    pub(super) frames: Range<usize>,
+}
+
+/// A tile and its surroundings, as planes.
+#[derive(Debug)]
+pub(super) struct Tile<'a, T> {
+    pub(super) clip: &'a Clip<'a, T>,
+    /// How many frames the tile has.
+    pub(super) frames: usize,
+    /// Where the tile's first frame stands in the planes.
+    pub(super) at: usize,
+    /// Where candidates stand in the planes.
+    pub(super) candidates: Range<usize>,
+    /// Per joint: half rotation vectors (fixed chart) or unit quaternions (local chart).
+    pub(super) planes: Planes<T>,
+    /// The first plane of each joint.
+    pub(super) rows: Vec<usize>,
+    /// Confidence per joint.
+    pub(super) confidence: Option<Planes<T>>,
+    /// Translation, 3 planes.
+    pub(super) translation: Option<Planes<T>>,
+}
+
+impl<'a, T: Real> Tile<'a, T> {
+    /// Loads the frames `first..end` of the clip, with what the window around them reaches.
+    pub(super) fn new(
+        clip: &'a Clip<'a, T>,
+        first: usize,
+        end: usize,
+        interrupt: &Interrupt,
+    ) -> Result<Self, Error> {
+        interrupt.check()?;
+        let Reach { back, ahead, before, after, pad, added } = clip.reach;
+        let joints = clip.extended.joints();
+        let from = (pad + first).saturating_sub(back + before);
+        let to = (pad + end + ahead + after).min(clip.extended.frames());
+        let own = if added { 0..clip.extended.frames() } else { pad..pad + clip.frames };
+        let mut rows = Vec::with_capacity(joints);
+        let mut count = 0;
+        for chart in &clip.paths.charts {
+            rows.push(count);
+            count += if *chart == JointChart::Local { 4 } else { 3 };
+        }
+        // The last lane of the tile may reach beyond what is loaded; its samples there are never used.
+        let mut planes = Planes::new(count, to - from + LANE);
+        for (at, block) in clip.extended.blocks(from..to) {
+            let (samples, _) = block.as_chunks::<4>();
+            for (joint, &row) in rows.iter().enumerate() {
+                load(clip.paths, &mut planes, row, joint, samples, at, at - from);
+            }
+        }
+        let values = |source: &[T], columns: usize, slope: bool, boundary: Boundary| {
+            let mut planes = Planes::new(columns, to - from + LANE);
+            for column in 0..columns {
+                for (i, value) in planes.row_mut(column)[..to - from].iter_mut().enumerate() {
+                    let frame = (from + i).cast_signed() - pad.cast_signed();
+                    *value = extended_number(source, columns, column, frame, boundary, slope);
+                }
+            }
+            planes
+        };
+        let boundary = clip.filter.boundary;
+        Ok(Self {
+            clip,
+            frames: end - first,
+            at: pad + first - from,
+            candidates: own.start.max(from) - from..own.end.min(to) - from,
+            planes,
+            rows,
+            confidence: clip.confidence.map(|c| values(c, joints, false, boundary)),
+            translation: clip.translation.map(|t| values(t, 3, true, boundary)),
+        })
+    }
+
+    /// Filters the tile into `out`, `(frames, joints, 4)`, and the translation into `moved`.
+    pub(super) fn filter(&self, out: &mut [T], moved: &mut [T], interrupt: &Interrupt) -> Result<(), Error> {
+        let joints = self.rows.len();
+        match self.clip.filter.weights {
+            Weights::Pose => self.filter_group(0..joints, out, moved, interrupt)?,
+            Weights::Joint => {
+                for joint in 0..joints {
+                    self.filter_group(joint..joint + 1, out, moved, interrupt)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Filters joints that share weights; the group of the first joint takes the translation along.
+    fn filter_group(
+        &self,
+        group: Range<usize>,
+        out: &mut [T],
+        moved: &mut [T],
+        interrupt: &Interrupt,
+    ) -> Result<(), Error> {
+        let mut likeness = Likeness::new(self, group.clone());
+        let mut means = Means::new(self, group);
+        match self.clip.filter.neighbors {
+            None => self.add_all(&mut likeness, &mut means, interrupt)?,
+            Some(count) => {
+                let mut nearest = Nearest::new(self.frames, count);
+                for lag in 1..=self.clip.reach.back {
+                    interrupt.check()?;
+                    for piece in self.pieces(lag) {
+                        let exponents = likeness.exponents(lag, piece.pairs.clone());
+                        nearest.offer(lag, &piece, exponents);
+                    }
+                }
+                nearest.add_to(&mut means);
+            }
+        }
+        means.store(out, moved);
+        Ok(())
+    }
+
+    /// Adds all candidates of the window, a block of lags at a time.
+    fn add_all(
+        &self,
+        likeness: &mut Likeness<'_, T>,
+        means: &mut Means<'_, T>,
+        interrupt: &Interrupt,
+    ) -> Result<(), Error> {
+        let padded = self.frames.next_multiple_of(LANE);
+        let mut forward = Planes::new(BLOCK_LAGS, padded);
+        let mut backward = Planes::new(BLOCK_LAGS, padded);
+        let back = self.clip.reach.back;
+        for first in (1..=back).step_by(BLOCK_LAGS) {
+            interrupt.check()?;
+            let lags = BLOCK_LAGS.min(back + 1 - first);
+            for l in 0..lags {
+                forward.row_mut(l).fill(T::ZERO);
+                backward.row_mut(l).fill(T::ZERO);
+                for piece in self.pieces(first + l) {
+                    let weights = likeness.weights(first + l, piece.pairs.clone());
+                    for (side, row) in
+                        [(&piece.forward, forward.row_mut(l)), (&piece.backward, backward.row_mut(l))]
+                    {
+                        if let Some(side) = side {
+                            row[side.frames.clone()].copy_from_slice(&weights[side.pairs.clone()]);
+                        }
+                    }
+                    means.add_local(likeness, &piece, first + l);
+                }
+                means.note(forward.row(l));
+                means.note(backward.row(l));
+            }
+            means.add_block(first, lags, &forward, &backward);
+        }
+        Ok(())
+    }
+
+    /// The pairs of one lag that matter to the tile, each computed once.
+    pub(super) fn pieces(&self, lag: usize) -> Vec<Piece> {
+        let (at, end) = (self.at, self.at + self.frames);
+        let Range { start: low, end: high } = self.candidates;
+        // Later candidates of frames t, as pairs (t, t + lag); earlier ones as pairs (t − lag, t).
+        let ahead = if lag <= self.clip.reach.ahead { high.saturating_sub(lag) } else { 0 };
+        let later = (at < end.min(ahead)).then(|| at..end.min(ahead));
+        let earlier = (at.max(low + lag) < end).then(|| at.max(low + lag) - lag..end - lag);
+        let side = |pairs: &Range<usize>, from: usize, lag: usize| Side {
+            pairs: pairs.start - from..pairs.end - from,
+            frames: pairs.start + lag - at..pairs.end + lag - at,
+        };
+        match (earlier, later) {
+            (Some(earlier), Some(later)) if earlier.end >= later.start => vec![Piece {
+                forward: Some(side(&later, earlier.start, 0)),
+                backward: Some(side(&earlier, earlier.start, lag)),
+                pairs: earlier.start..later.end,
+            }],
+            (earlier, later) => {
+                let earlier = earlier.map(|e| Piece {
+                    forward: None,
+                    backward: Some(side(&e, e.start, lag)),
+                    pairs: e,
+                });
+                let later =
+                    later.map(|l| Piece { forward: Some(side(&l, l.start, 0)), backward: None, pairs: l });
+                earlier.into_iter().chain(later).collect()
+            }
+        }
+    }
+}
+
+/// Loads one joint of a block of rows, the first of which is the extended frame `frame`, into its planes from `at`.
+fn load<T: Real>(
+    paths: &Paths<T>,
+    planes: &mut Planes<T>,
+    row: usize,
+    joint: usize,
+    samples: &[[T; 4]],
+    frame: usize,
+    at: usize,
+) {
+    let joints = paths.charts.len();
+    let frames = samples.len() / joints;
+    for start in (0..frames).step_by(LANE) {
+        let end = frames.min(start + LANE);
+        let mut signs = [T::ONE; LANE];
+        for (i, sign) in signs[..end - start].iter_mut().enumerate() {
+            *sign = paths.sign(frame + start + i, joint);
+        }
+        let from = &samples[start * joints + joint..];
+        let range = at + start..at + end;
+        match paths.charts[joint] {
+            JointChart::Fixed(centre) => {
+                let [x, y, z] = planes.rows_mut::<3>(row).map(|plane| &mut plane[range.clone()]);
+                kernels::load_fixed(from, joints, &signs, conjugate_one(centre), x, y, z);
+            }
+            JointChart::Local => {
+                let [w, x, y, z] = planes.rows_mut::<4>(row).map(|plane| &mut plane[range.clone()]);
+                kernels::load_local(from, joints, &signs, w, x, y, z);
+            }
+        }
+    }
+}

@@ -1,0 +1,290 @@
+//! Karcher mean: the rotation with the smallest mean squared geodesic distance to the samples.
+//!
+//! The gradient of `½ mean φ²` at `x` is `−mean v`, `v = log(x⁻¹ q)` with the sign of `x⁻¹ q` that has `w ≥ 0`, and its
+//! Hessian is `mean[φ cot φ · I + (1 − φ cot φ) · v vᵀ/φ²]` (Pennec 2006; on S³, φ is half the rotation angle). Newton's
+//! steps with it converge quadratically from the chordal mean, the main eigenvector of `Σ q qᵀ`.
+
+use crate::parallel::{self, Interrupt};
+use crate::rotations::quaternion::{between, dot, exp_one, product, unit};
+use crate::simd::multiversion;
+use crate::{ClipView, Error, Real, error::check_length};
+
+/// Columns that are accumulated together: one vector of float32 at the widest level.
+const COLUMNS: usize = 16;
+
+/// Frames per task; the sums of a task are taken in `T`, those of the tasks in float64.
+const TASK_FRAMES: usize = 512;
+
+/// Clips longer than this are first solved on a subset of about as many frames.
+const SUBSET_FRAMES: usize = 4096;
+
+/// Newton steps at most; a handful is enough unless the mean is not unique.
+const MAX_STEPS: usize = 100;
+
+/// What a pass sums per joint: the total weight, and the 10 entries of `q qᵀ` or the gradient, `φ cot φ` and the 6
+/// entries of the rest of the Hessian.
+const SUMS: usize = 11;
+
+type Sums = [f64; SUMS];
+
+/// Karcher means of all joints of a clip, `w ≥ 0`; NaN where no sample has weight.
+///
+/// `weights` are `(frames, joints)`, not negative; missing samples (NaN or zero) have none. The signs and lengths of the
+/// samples do not matter.
+///
+/// # Errors
+/// [`Error::Length`] if the weights do not fit the clip; [`Error::Interrupted`].
+pub fn mean<T: Real>(
+    clip: ClipView<'_, T>,
+    weights: Option<&[T]>,
+    interrupt: &Interrupt,
+) -> Result<Vec<[f64; 4]>, Error> {
+    let (frames, joints) = (clip.frames(), clip.joints());
+    if let Some(weights) = weights {
+        check_length("weights", frames * joints, weights.len())?;
+    }
+    let stride = frames.div_ceil(SUBSET_FRAMES).max(1);
+    let none = vec![[1.0, 0.0, 0.0, 0.0]; joints];
+    let mut means: Vec<[f64; 4]> =
+        pass(clip, weights, stride, moment_sums, &none, interrupt)?.iter().map(main_direction).collect();
+    let mut seen = vec![false; joints];
+    if stride > 1 {
+        solve(clip, weights, stride, &mut means, interrupt)?;
+        // A joint may be missing in the whole subset.
+        seen = means.iter().map(|m| m[0].is_finite()).collect();
+    }
+    if seen.iter().any(|&seen| !seen) {
+        let all = pass(clip, weights, 1, moment_sums, &none, interrupt)?;
+        for ((mean, sums), _) in means.iter_mut().zip(&all).zip(&seen).filter(|(_, seen)| !**seen) {
+            *mean = main_direction(sums);
+        }
+    }
+    solve(clip, weights, 1, &mut means, interrupt)?;
+    Ok(means.into_iter().map(|m| if m[0] < 0.0 { m.map(|x| -x) } else { m }).collect())
+}
+
+/// Newton's iteration from `means`, in place.
+fn solve<T: Real>(
+    clip: ClipView<'_, T>,
+    weights: Option<&[T]>,
+    stride: usize,
+    means: &mut [[f64; 4]],
+    interrupt: &Interrupt,
+) -> Result<(), Error> {
+    // Newton's error after a step is of the order of the step's square.
+    let enough = (0.25 * T::EPSILON.to_f64()).sqrt();
+    let mut before = vec![f64::INFINITY; means.len()];
+    for _ in 0..MAX_STEPS {
+        let sums = pass(clip, weights, stride, newton_sums, means, interrupt)?;
+        let mut largest = 0.0_f64;
+        for ((mean, sums), before) in means.iter_mut().zip(&sums).zip(&mut before) {
+            let gradient = [sums[1] / sums[0], sums[2] / sums[0], sums[3] / sums[0]];
+            let length = norm(gradient);
+            // Where Newton does not shorten the gradient, the plain step does.
+            let step = if length < *before { newton_step(gradient, sums) } else { gradient };
+            *before = length;
+            if step.iter().all(|x| x.is_finite()) {
+                *mean = unit(product(*mean, exp_one(step)));
+                largest = largest.max(norm(step));
+            }
+        }
+        if largest < enough {
+            break;
+        }
+    }
+    Ok(())
+}
+
+fn norm(v: [f64; 3]) -> f64 {
+    (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
+}
+
+/// `H⁻¹ g`, by Cramer's rule.
+fn newton_step(g: [f64; 3], sums: &Sums) -> [f64; 3] {
+    let n = sums[0];
+    let diagonal = sums[4] / n;
+    let [xx, xy, xz] = [sums[5] / n + diagonal, sums[6] / n, sums[7] / n];
+    let [yy, yz, zz] = [sums[8] / n + diagonal, sums[9] / n, sums[10] / n + diagonal];
+    let (cx, cy, cz) = (yy * zz - yz * yz, yz * xz - xy * zz, xy * yz - yy * xz);
+    let determinant = xx * cx + xy * cy + xz * cz;
+    // A determinant near 0 stands for samples half a turn away, where the Hessian says little.
+    if determinant < 1e-6 {
+        return g;
+    }
+    [
+        (cx * g[0] + cy * g[1] + cz * g[2]) / determinant,
+        (cy * g[0] + (xx * zz - xz * xz) * g[1] + (xy * xz - xx * yz) * g[2]) / determinant,
+        (cz * g[0] + (xy * xz - xx * yz) * g[1] + (xx * yy - xy * xy) * g[2]) / determinant,
+    ]
+}
+
+/// The main eigenvector of the symmetric 4 × 4 matrix whose upper triangle is `sums[1..]`, by repeated squaring.
+fn main_direction(sums: &Sums) -> [f64; 4] {
+    /// Squarings: eigenvalues whose ratio is above `1 + 2⁻⁴⁰` are told apart.
+    const SQUARINGS: usize = 46;
+    let mut m = [
+        [sums[1], sums[2], sums[3], sums[4]],
+        [sums[2], sums[5], sums[6], sums[7]],
+        [sums[3], sums[6], sums[8], sums[9]],
+        [sums[4], sums[7], sums[9], sums[10]],
+    ];
+    for _ in 0..SQUARINGS {
+        let trace = m[0][0] + m[1][1] + m[2][2] + m[3][3];
+        let scaled = m.map(|row| row.map(|x| x / trace));
+        for i in 0..4 {
+            for j in 0..4 {
+                m[i][j] = (0..4).map(|k| scaled[i][k] * scaled[k][j]).sum();
+            }
+        }
+    }
+    let largest = (0..4).fold(0, |best, i| if m[i][i] > m[best][best] { i } else { best });
+    unit(m[largest])
+}
+
+/// What sums over the frames of some columns: [`moment_sums`] or [`newton_sums`].
+type Kernel<T> = fn(Columns<'_, T>, &[[T; 4]; COLUMNS]) -> [[T; COLUMNS]; SUMS];
+
+/// Sums of `kernel` at `means` over every `stride`-th frame, per joint.
+fn pass<T: Real>(
+    clip: ClipView<'_, T>,
+    weights: Option<&[T]>,
+    stride: usize,
+    kernel: Kernel<T>,
+    means: &[[f64; 4]],
+    interrupt: &Interrupt,
+) -> Result<Vec<Sums>, Error> {
+    let joints = clip.joints();
+    let used = clip.frames().div_ceil(stride);
+    let tasks: Vec<usize> = (0..used).step_by(TASK_FRAMES).collect();
+    let centres: Vec<[T; 4]> = means.iter().map(|m| m.map(T::from_f64)).collect();
+    let parts = parallel::map(tasks, used * joints * 3, |_, first| {
+        interrupt.check()?;
+        let end = (first + TASK_FRAMES).min(used);
+        let mut sums = vec![[0.0; SUMS]; joints];
+        for start in (0..joints).step_by(COLUMNS) {
+            let width = COLUMNS.min(joints - start);
+            let mut centre = [[T::ONE, T::ZERO, T::ZERO, T::ZERO]; COLUMNS];
+            centre[..width].copy_from_slice(&centres[start..start + width]);
+            let columns = Columns { clip, weights, start, width, first, end, stride };
+            let block = kernel(columns, &centre);
+            for (joint, sums) in sums[start..start + width].iter_mut().enumerate() {
+                *sums = std::array::from_fn(|k| block[k][joint].to_f64());
+            }
+        }
+        Ok(sums)
+    })?;
+    let mut total = vec![[0.0; SUMS]; joints];
+    for part in &parts {
+        for (total, part) in total.iter_mut().zip(part) {
+            for (total, part) in total.iter_mut().zip(part) {
+                *total += part;
+            }
+        }
+    }
+    Ok(total)
+}
+
+/// Up to [`COLUMNS`] joints from `start` in every `stride`-th frame of a range.
+#[derive(Clone, Copy)]
+struct Columns<'a, T> {
+    clip: ClipView<'a, T>,
+    weights: Option<&'a [T]>,
+    start: usize,
+    width: usize,
+    first: usize,
+    end: usize,
+    stride: usize,
+}
+
+/// Calls `add(quaternions, weights)` for each frame; missing samples become 1 with weight 0.
+#[inline(always)]
+fn for_each_frame<T: Real>(columns: Columns<'_, T>, mut add: impl FnMut(&[[T; COLUMNS]; 4], &[T; COLUMNS])) {
+    let Columns { clip, weights, start, width, first, end, stride } = columns;
+    let joints = clip.joints();
+    let (samples, _) = clip.data().as_chunks::<4>();
+    let mut padded = [[T::ZERO; 4]; COLUMNS];
+    for frame in first..end {
+        let at = frame * stride * joints + start;
+        let row = &samples[at..at + width];
+        let row: &[[T; 4]; COLUMNS] = if let Ok(row) = row.try_into() {
+            row
+        } else {
+            padded[..width].copy_from_slice(row);
+            &padded
+        };
+        let mut weight = [T::ONE; COLUMNS];
+        if let Some(weights) = weights {
+            weight[..width].copy_from_slice(&weights[at..at + width]);
+        }
+        let mut q = [[T::ZERO; COLUMNS]; 4];
+        for c in 0..COLUMNS {
+            let square = dot(row[c], row[c]);
+            // A comparison with NaN is false.
+            let valid = (square > T::TINY_SQUARE) & (square < T::ONE / T::TINY_SQUARE);
+            q[0][c] = if valid { row[c][0] } else { T::ONE };
+            q[1][c] = if valid { row[c][1] } else { T::ZERO };
+            q[2][c] = if valid { row[c][2] } else { T::ZERO };
+            q[3][c] = if valid { row[c][3] } else { T::ZERO };
+            weight[c] = if valid { weight[c] } else { T::ZERO };
+        }
+        add(&q, &weight);
+    }
+}
+
+multiversion! {
+    fn moment_sums<T: Real>(columns: Columns<'_, T>, _centre: &[[T; 4]; COLUMNS]) -> [[T; COLUMNS]; SUMS] {
+        let mut sums = [[T::ZERO; COLUMNS]; SUMS];
+        for_each_frame(columns, |q, weight| {
+            for c in 0..COLUMNS {
+                let [w, x, y, z] = [q[0][c], q[1][c], q[2][c], q[3][c]];
+                let n = weight[c];
+                let (nw, nx, ny) = (n * w, n * x, n * y);
+                sums[0][c] += n;
+                sums[1][c] += nw * w;
+                sums[2][c] += nw * x;
+                sums[3][c] += nw * y;
+                sums[4][c] += nw * z;
+                sums[5][c] += nx * x;
+                sums[6][c] += nx * y;
+                sums[7][c] += nx * z;
+                sums[8][c] += ny * y;
+                sums[9][c] += ny * z;
+                sums[10][c] += n * z * z;
+            }
+        });
+        sums
+    }
+}
+
+multiversion! {
+    fn newton_sums<T: Real>(columns: Columns<'_, T>, centre: &[[T; 4]; COLUMNS]) -> [[T; COLUMNS]; SUMS] {
+        let mut sums = [[T::ZERO; COLUMNS]; SUMS];
+        for_each_frame(columns, |q, weight| {
+            for c in 0..COLUMNS {
+                let d = between(centre[c], [q[0][c], q[1][c], q[2][c], q[3][c]]);
+                let square = d[1] * d[1] + d[2] * d[2] + d[3] * d[3];
+                let small = square < T::TINY_SQUARE;
+                let sine = square.sqrt();
+                let angle = sine.atan2_nonnegative(d[0].abs());
+                let factor = if small { T::ONE / d[0].abs() } else { angle / sine };
+                let cotangent = factor * d[0].abs();
+                let rest = if small { T::ZERO } else { (T::ONE - cotangent) / square };
+                let signed = (weight[c] * factor).copysign(d[0]);
+                let n = weight[c] * rest;
+                let (nx, ny) = (n * d[1], n * d[2]);
+                sums[0][c] += weight[c];
+                sums[1][c] += signed * d[1];
+                sums[2][c] += signed * d[2];
+                sums[3][c] += signed * d[3];
+                sums[4][c] += weight[c] * cotangent;
+                sums[5][c] += nx * d[1];
+                sums[6][c] += nx * d[2];
+                sums[7][c] += nx * d[3];
+                sums[8][c] += ny * d[2];
+                sums[9][c] += ny * d[3];
+                sums[10][c] += n * d[3] * d[3];
+            }
+        });
+        sums
+    }
+}
