@@ -71,7 +71,20 @@ class use_backend:  # noqa: N801 - used as a function, and as a context manager
 
 
 def get_backend() -> Backend:
-    """Return the name of the backend in use."""
+    """Return the name of the backend in use.
+
+    Returns
+    -------
+    {"rust", "numpy"}
+        What `use_backend` or ``QUATFILT_BACKEND`` chose.
+
+    Examples
+    --------
+    >>> import quatfilt as qf
+    >>> with qf.use_backend("numpy"):
+    ...     qf.get_backend()
+    'numpy'
+    """
     return "rust" if _current is _core else "numpy"
 
 
@@ -88,6 +101,16 @@ def set_num_threads(n: int | None) -> None:
     ------
     ValueError
         If `n` is below 1.
+    TypeError
+        If `n` is neither an integer nor None.
+
+    Examples
+    --------
+    >>> import quatfilt as qf
+    >>> qf.set_num_threads(2)
+    >>> qf.get_num_threads()
+    2
+    >>> qf.set_num_threads(None)
     """
     if n is not None and (isinstance(n, bool) or not isinstance(n, int)):
         raise TypeError(f"n: expected an integer or None, got {type(n).__name__}")
@@ -97,7 +120,19 @@ def set_num_threads(n: int | None) -> None:
 
 
 def get_num_threads() -> int:
-    """Return how many threads the Rust core uses."""
+    """Return how many threads the Rust core uses.
+
+    Returns
+    -------
+    int
+        At least 1; `set_num_threads` says where the number comes from.
+
+    Examples
+    --------
+    >>> import quatfilt as qf
+    >>> qf.get_num_threads() >= 1
+    True
+    """
     return _core.get_num_threads()
 
 
@@ -106,6 +141,17 @@ def simd_level() -> str:
 
     The processor is asked once per process. The environment variable ``QUATFILT_SIMD`` may lower the level; the
     results have the same bits at every level.
+
+    Returns
+    -------
+    {"baseline", "avx2", "avx512"}
+        The baseline is SSE2 on x86-64 and NEON on 64-bit ARM.
+
+    Examples
+    --------
+    >>> import quatfilt as qf
+    >>> qf.simd_level() in ("baseline", "avx2", "avx512")
+    True
     """
     return _core.simd_level()
 

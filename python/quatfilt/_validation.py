@@ -31,7 +31,7 @@ def floats(value: Any, name: str) -> Array:
     except ValueError as error:
         raise ValueError(f"{name}: expected a rectangular array of numbers ({error})") from None
     if array.dtype.kind in _WIDEST_INTEGERS:
-        dtype = np.dtype(np.float64)
+        dtype: np.dtype[Any] = np.dtype(np.float64)
     elif array.dtype.kind == "f":
         dtype = np.dtype(np.float32 if array.dtype.itemsize <= 4 else np.float64)
     else:
@@ -118,7 +118,7 @@ def number(
     except (TypeError, ValueError):
         raise TypeError(f"{name}: expected {expected}, got {type(value).__name__}") from None
     if not math.isfinite(result) or not _within(result, above, at_least, at_most):
-        raise ValueError(f"{name}: expected {expected}, got {value}")
+        raise ValueError(f"{name}: expected {expected}, got {value!s}")
     return result
 
 

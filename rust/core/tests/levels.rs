@@ -1,0 +1,78 @@
+//! Every SIMD level gives the same bits.
+//!
+//! One test only: the level belongs to the process, and tests of one file run at the same time.
+
+use quatfilt_core::rotations::quaternion;
+use quatfilt_core::simd::Level;
+use quatfilt_core::{Error, Real};
+
+/// More than a task, and no multiple of a vector.
+const ROWS: usize = 20_011;
+
+type Map<T> = fn(&[T], &mut [T]) -> Result<(), Error>;
+type Zip<T> = fn(&[T], &[T], &mut [T]) -> Result<(), Error>;
+
+/// Numbers of many magnitudes and both signs, with zeros, infinities and NaN among them.
+fn numbers<T: Real>(length: usize, seed: u64) -> Vec<T> {
+    let mut state = seed;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..length)
+        .map(|i| match i % 1009 {
+            0 => T::ZERO,
+            1 => T::nan(),
+            2 => T::from_f64(f64::INFINITY),
+            3 => T::from_f64(1e-40),
+            _ => T::from_f64((2.0 * next() - 1.0) * 10_f64.powf(4.0 * next() - 3.0)),
+        })
+        .collect()
+}
+
+fn at_level<T: Real>(level: Level) -> Vec<(&'static str, Vec<u64>)> {
+    assert_eq!(level.set(), level);
+    let maps: [(&str, usize, usize, Map<T>); 4] = [
+        ("conjugate", 4, 4, quaternion::conjugate),
+        ("exp", 3, 4, quaternion::exp),
+        ("log", 4, 3, quaternion::log),
+        ("normalize", 4, 4, quaternion::normalize),
+    ];
+    let zips: [(&str, usize, Zip<T>); 2] =
+        [("geodesic_distance", 1, quaternion::geodesic_distance), ("multiply", 4, quaternion::multiply)];
+    let bits = |numbers: Vec<T>| {
+        // NaN is one value: its sign and payload are not part of the result.
+        numbers.into_iter().map(T::to_f64).map(|x| if x.is_nan() { u64::MAX } else { x.to_bits() }).collect()
+    };
+    let mut results = Vec::new();
+    for (name, columns_in, columns_out, function) in maps {
+        let mut out = vec![T::ZERO; ROWS * columns_out];
+        function(&numbers(ROWS * columns_in, 1), &mut out).expect("the lengths fit");
+        results.push((name, bits(out)));
+    }
+    for (name, columns, function) in zips {
+        let mut out = vec![T::ZERO; ROWS * columns];
+        function(&numbers(ROWS * 4, 2), &numbers(ROWS * 4, 3), &mut out).expect("the lengths fit");
+        results.push((name, bits(out)));
+    }
+    results
+}
+
+fn same_bits<T: Real>() {
+    let expected = at_level::<T>(Level::Baseline);
+    for level in Level::ALL.into_iter().filter(|&level| level <= Level::detected()) {
+        for ((name, got), (_, expected)) in at_level::<T>(level).into_iter().zip(&expected) {
+            let differ = got.iter().zip(expected).position(|(a, b)| a != b);
+            assert_eq!(differ, None, "{name} at {} differs from baseline at this element", level.name());
+        }
+    }
+}
+
+#[test]
+fn every_level_gives_the_same_bits() {
+    same_bits::<f32>();
+    same_bits::<f64>();
+    for level in Level::ALL {
+        assert!(level.set() <= Level::detected());
+    }
+}

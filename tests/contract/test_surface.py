@@ -1,0 +1,47 @@
+"""The two backends have the same functions with the same positional arguments."""
+
+import inspect
+
+import pytest
+from quatfilt import _core, _reference
+
+ONLY_IN_CORE = {
+    "get_num_threads": "the reference has no threads",
+    "is_debug_build": "the reference is not built",
+    "set_num_threads": "the reference has no threads",
+    "simd_level": "the reference leaves vector instructions to NumPy",
+}
+
+ONLY_IN_REFERENCE = {
+    "continuous": "not compiled yet",
+    "fill_gaps": "not compiled yet",
+    "forward_kinematics": "not compiled yet",
+    "noise_level": "not compiled yet",
+    "scan": "not compiled yet",
+    "slerp": "not compiled yet",
+}
+
+
+def functions(module):
+    return {name for name in module.__all__ if callable(getattr(module, name))}
+
+
+def positional(function):
+    return [
+        parameter.name
+        for parameter in inspect.signature(function).parameters.values()
+        if parameter.kind in (parameter.POSITIONAL_ONLY, parameter.POSITIONAL_OR_KEYWORD)
+    ]
+
+
+def test_the_same_names():
+    assert functions(_core) - functions(_reference) == set(ONLY_IN_CORE)
+    assert functions(_reference) - functions(_core) == set(ONLY_IN_REFERENCE)
+
+
+@pytest.mark.parametrize("name", sorted(functions(_core) & functions(_reference)))
+def test_the_same_positional_arguments(name):
+    core, reference = getattr(_core, name), getattr(_reference, name)
+    assert positional(core) == positional(reference)
+    assert len(inspect.signature(core).parameters) == len(positional(core)), "no keywords between the layers"
+    assert len(inspect.signature(reference).parameters) == len(positional(reference))
