@@ -1,0 +1,1 @@
+"""Skeletons, motion, and how to measure it."""
