@@ -72,7 +72,7 @@ fn solve<T: Real>(
     interrupt: &Interrupt,
 ) -> Result<(), Error> {
     // Newton's error after a step is of the order of the step's square.
-    let enough = (0.25 * T::EPSILON.to_f64()).sqrt();
+    let enough = T::EPSILON.to_f64().sqrt();
     let mut before = vec![f64::INFINITY; means.len()];
     for _ in 0..MAX_STEPS {
         let sums = pass(clip, weights, stride, newton_sums, means, interrupt)?;
@@ -196,25 +196,21 @@ struct Columns<'a, T> {
     stride: usize,
 }
 
-/// Calls `add(quaternions, weights)` for each frame; missing samples become 1 with weight 0.
-#[inline(always)]
-fn for_each_frame<T: Real>(columns: Columns<'_, T>, mut add: impl FnMut(&[[T; COLUMNS]; 4], &[T; COLUMNS])) {
-    let Columns { clip, weights, start, width, first, end, stride } = columns;
-    let joints = clip.joints();
-    let (samples, _) = clip.data().as_chunks::<4>();
-    let mut padded = [[T::ZERO; 4]; COLUMNS];
-    for frame in first..end {
-        let at = frame * stride * joints + start;
-        let row = &samples[at..at + width];
-        let row: &[[T; 4]; COLUMNS] = if let Ok(row) = row.try_into() {
-            row
+impl<T: Real> Columns<'_, T> {
+    /// Quaternions and weights of one frame; missing samples become 1 with weight 0.
+    #[inline(always)]
+    fn load(&self, frame: usize) -> ([[T; COLUMNS]; 4], [T; COLUMNS]) {
+        let at = frame * self.stride * self.clip.joints() + self.start;
+        let (samples, _) = self.clip.data().as_chunks::<4>();
+        let mut row = [[T::ZERO; 4]; COLUMNS];
+        if self.width == COLUMNS {
+            row.copy_from_slice(&samples[at..at + COLUMNS]);
         } else {
-            padded[..width].copy_from_slice(row);
-            &padded
-        };
+            row[..self.width].copy_from_slice(&samples[at..at + self.width]);
+        }
         let mut weight = [T::ONE; COLUMNS];
-        if let Some(weights) = weights {
-            weight[..width].copy_from_slice(&weights[at..at + width]);
+        if let Some(weights) = self.weights {
+            weight[..self.width].copy_from_slice(&weights[at..at + self.width]);
         }
         let mut q = [[T::ZERO; COLUMNS]; 4];
         for c in 0..COLUMNS {
@@ -227,14 +223,16 @@ fn for_each_frame<T: Real>(columns: Columns<'_, T>, mut add: impl FnMut(&[[T; CO
             q[3][c] = if valid { row[c][3] } else { T::ZERO };
             weight[c] = if valid { weight[c] } else { T::ZERO };
         }
-        add(&q, &weight);
+        (q, weight)
     }
 }
 
 multiversion! {
+    /// Sums of the entries of `q qᵀ`.
     fn moment_sums<T: Real>(columns: Columns<'_, T>, _centre: &[[T; 4]; COLUMNS]) -> [[T; COLUMNS]; SUMS] {
         let mut sums = [[T::ZERO; COLUMNS]; SUMS];
-        for_each_frame(columns, |q, weight| {
+        for frame in columns.first..columns.end {
+            let (q, weight) = columns.load(frame);
             for c in 0..COLUMNS {
                 let [w, x, y, z] = [q[0][c], q[1][c], q[2][c], q[3][c]];
                 let n = weight[c];
@@ -251,15 +249,17 @@ multiversion! {
                 sums[9][c] += ny * z;
                 sums[10][c] += n * z * z;
             }
-        });
+        }
         sums
     }
 }
 
 multiversion! {
+    /// Sums of the gradient and of the Hessian of `½ φ²` at `centre`.
     fn newton_sums<T: Real>(columns: Columns<'_, T>, centre: &[[T; 4]; COLUMNS]) -> [[T; COLUMNS]; SUMS] {
         let mut sums = [[T::ZERO; COLUMNS]; SUMS];
-        for_each_frame(columns, |q, weight| {
+        for frame in columns.first..columns.end {
+            let (q, weight) = columns.load(frame);
             for c in 0..COLUMNS {
                 let d = between(centre[c], [q[0][c], q[1][c], q[2][c], q[3][c]]);
                 let square = d[1] * d[1] + d[2] * d[2] + d[3] * d[3];
@@ -284,7 +284,7 @@ multiversion! {
                 sums[9][c] += ny * d[3];
                 sums[10][c] += n * d[3] * d[3];
             }
-        });
+        }
         sums
     }
 }
