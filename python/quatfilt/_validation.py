@@ -163,6 +163,68 @@ def per_joint(
     return array
 
 
+def interval(
+    value: Any, name: str, *, at_least: float | None = None, at_most: float | None = None
+) -> tuple[float, float]:
+    """Return two numbers `(low, high)`, in this order and within their bounds."""
+    try:
+        low, high = value
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: expected two numbers (low, high), got {value!r}") from None
+    low = number(low, f"{name}[0]", at_least=at_least, at_most=at_most)
+    high = number(high, f"{name}[1]", at_least=at_least, at_most=at_most)
+    if low > high:
+        raise ValueError(f"{name}: expected two numbers (low, high) in this order, got {value!r}")
+    return low, high
+
+
+def times(value: Any, name: str, frames: int) -> NDArray[np.float64]:
+    """Return strictly increasing times, one per frame."""
+    array = np.asarray(floats(value, name), np.float64)
+    if array.shape != (frames,):
+        raise ValueError(f"{name}: expected one time per frame, shape ({frames},), got {array.shape}")
+    _finite(array, name)
+    steps = np.flatnonzero(array[1:] <= array[:-1])
+    if steps.size:
+        at = int(steps[0])
+        raise ValueError(
+            f"{name}: expected strictly increasing times, got {array[at + 1]:g} after {array[at]:g} at index {at + 1}"
+        )
+    return array
+
+
+def times_within(value: Any, name: str, span: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return times ``(n,)`` from the first to the last of `span`."""
+    array = np.asarray(floats(value, name), np.float64)
+    if array.ndim != 1:
+        raise ValueError(f"{name}: expected shape (n,), got {array.shape}")
+    _finite(array, name)
+    if not span.size and array.size:
+        raise ValueError(f"{name}: expected no times, since there are no frames, got {array.size}")
+    outside = np.flatnonzero((array < span[0]) | (array > span[-1])) if array.size else array
+    if outside.size:
+        at = int(outside[0])
+        raise ValueError(
+            f"{name}: expected times from {span[0]:g} to {span[-1]:g}, got {array[at]:.17g} at index {at}"
+        )
+    return array
+
+
+def _finite(array: Array, name: str) -> None:
+    odd = np.flatnonzero(~np.isfinite(array))
+    if odd.size:
+        raise ValueError(f"{name}: expected finite times, got {array[odd[0]]} at index {int(odd[0])}")
+
+
+def generator(value: Any, name: str) -> np.random.Generator:
+    """Return a generator of random numbers: `value`, or a new one of that seed."""
+    if isinstance(value, np.random.Generator):
+        return value
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
+        raise TypeError(f"{name}: expected a numpy.random.Generator or a seed, got {type(value).__name__}")
+    return np.random.default_rng(integer(value, name, at_least=0))
+
+
 def confidence(value: ArrayLike | None, frames: int, joints: int, dtype: np.dtype[Any]) -> Array | None:
     """Return `value`, ``(frames,)`` or ``(frames, joints)`` in 0…1, as ``(frames, joints)``; NaN counts as 0."""
     if value is None:

@@ -1,13 +1,13 @@
 //! NumPy arrays in and out, and the way into the core.
 
 use numpy::{
-    Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray,
-    PyUntypedArrayMethods,
+    Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
+    PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use quatfilt_core::Error;
 use quatfilt_core::parallel::Interrupt;
+use quatfilt_core::{ClipMut, ClipView, Error, Real};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::RecvTimeoutError;
 use std::time::Duration;
@@ -50,7 +50,32 @@ pub(crate) fn elements<'a, T: Element>(
     name: &str,
     array: &'a PyReadonlyArrayDyn<'_, T>,
 ) -> PyResult<&'a [T]> {
-    array.as_slice().map_err(|_| PyValueError::new_err(format!("{name}: expected a C-contiguous array")))
+    // `as_slice` would take a column-major array too.
+    let slice = if array.is_c_contiguous() { array.as_slice().ok() } else { None };
+    slice.ok_or_else(|| PyValueError::new_err(format!("{name}: expected a C-contiguous array")))
+}
+
+/// A borrowed clip `(frames, joints, 4)`.
+pub(crate) fn clip<'a, T: Real + Element>(
+    name: &str,
+    array: &'a PyReadonlyArrayDyn<'_, T>,
+) -> PyResult<ClipView<'a, T>> {
+    let &[frames, joints, 4] = array.shape() else {
+        return Err(PyValueError::new_err(format!(
+            "{name}: expected shape (frames, joints, 4), got {:?}",
+            array.shape()
+        )));
+    };
+    ClipView::new(elements(name, array)?, frames, joints).map_err(to_python)
+}
+
+/// A borrowed clip `(frames, joints, 4)` to be written.
+pub(crate) fn clip_mut<'a, T: Real + Element>(
+    array: &'a mut PyReadwriteArrayDyn<'_, T>,
+    frames: usize,
+    joints: usize,
+) -> PyResult<ClipMut<'a, T>> {
+    ClipMut::new(array.as_slice_mut()?, frames, joints).map_err(to_python)
 }
 
 /// A fresh array, owned by NumPy.

@@ -4,17 +4,29 @@
 
 mod array;
 mod filters;
+mod motion;
+mod noise;
 mod rotations;
 mod threads;
 
 #[pyo3::pymodule]
 mod _core {
     #[pymodule_export]
+    use super::filters::gaps::fill_gaps;
+    #[pymodule_export]
     use super::filters::nonlocal_pose_means::nonlocal_pose_means;
+    #[pymodule_export]
+    use super::motion::skeleton::forward_kinematics;
+    #[pymodule_export]
+    use super::noise::noise::noise_level;
+    #[pymodule_export]
+    use super::rotations::continuity::continuous;
     #[pymodule_export]
     use super::rotations::mean::mean;
     #[pymodule_export]
-    use super::rotations::quaternion::{conjugate, exp, geodesic_distance, log, multiply, normalize};
+    use super::rotations::quaternion::{conjugate, exp, geodesic_distance, log, multiply, normalize, scan};
+    #[pymodule_export]
+    use super::rotations::resample::slerp;
     #[pymodule_export]
     use super::threads::{get_num_threads, is_debug_build, set_num_threads, simd_level};
 }

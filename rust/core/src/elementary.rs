@@ -60,8 +60,21 @@ macro_rules! real_basics {
             self.is_finite()
         }
         #[inline(always)]
+        fn is_nan(self) -> bool {
+            self.is_nan()
+        }
+        #[inline(always)]
         fn nan() -> Self {
             $T::NAN
+        }
+        #[inline(always)]
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "the cast saturates, which is what is asked for"
+        )]
+        fn to_count(self) -> usize {
+            self as usize
         }
     };
 }

@@ -7,15 +7,22 @@
 //!
 //! - foundation: [`error`], [`real`] (float32 and float64), [`clip`] (borrowed views and aligned planes),
 //!   [`elementary`] (vectorisable functions), [`simd`] (run-time dispatch), [`parallel`] (the thread pool);
-//! - [`rotations`]: algebra, Karcher mean, resampling.
+//! - [`rotations`]: algebra, continuity, resampling;
+//! - [`filters`]: filling of gaps;
+//! - [`noise`]: the noise level;
+//! - [`motion`]: forward kinematics.
 //!
 //! Hot kernels are maps over frames on aligned planes: no libm, no fused multiply-add and no horizontal sums, so
 //! that the bits are the same at every SIMD level and for every number of threads.
+
+#![cfg_attr(test, allow(clippy::float_cmp, reason = "tests say exactly what they expect"))]
 
 pub mod clip;
 pub mod elementary;
 pub mod error;
 pub mod filters;
+pub mod motion;
+pub mod noise;
 pub mod parallel;
 pub mod real;
 pub mod rotations;

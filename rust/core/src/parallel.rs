@@ -23,7 +23,7 @@ const LOCK_PATIENCE: Duration = Duration::from_millis(200);
 struct Pool {
     process: u32,
     threads: usize,
-    pool: Arc<rayon::ThreadPool>,
+    workers: Arc<rayon::ThreadPool>,
 }
 
 static POOL: Mutex<Option<Pool>> = Mutex::new(None);
@@ -70,22 +70,22 @@ fn pool() -> Option<Arc<rayon::ThreadPool>> {
         && held.process == process
         && held.threads == threads
     {
-        return Some(Arc::clone(&held.pool));
+        return Some(Arc::clone(&held.workers));
     }
     let built = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .thread_name(|index| format!("quatfilt-{index}"))
         .build()
         .ok()?;
-    let pool = Arc::new(built);
-    let before = cell.replace(Pool { process, threads, pool: Arc::clone(&pool) });
+    let workers = Arc::new(built);
+    let before = cell.replace(Pool { process, threads, workers: Arc::clone(&workers) });
     if let Some(before) = before
         && before.process != process
     {
         // Its threads live in the parent only: to drop it would wait for them for ever.
         std::mem::forget(before);
     }
-    Some(pool)
+    Some(workers)
 }
 
 /// A flag by which a caller asks a running kernel to stop.

@@ -65,9 +65,15 @@ pub trait Real:
     /// Neither NaN nor infinite.
     #[must_use]
     fn is_finite(self) -> bool;
+    /// Not a number.
+    #[must_use]
+    fn is_nan(self) -> bool;
     /// NaN.
     #[must_use]
     fn nan() -> Self;
+    /// The whole number that `self` is; 0 for negative numbers and NaN.
+    #[must_use]
+    fn to_count(self) -> usize;
     /// `exp(x)` for `x ≤` [`Real::EXP_LIMIT`]; exactly 0 where the result would be subnormal.
     #[must_use]
     fn exp(self) -> Self;

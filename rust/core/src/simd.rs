@@ -72,6 +72,7 @@ impl Level {
     }
 
     /// Lowers the level for this process, for tests; a level the processor lacks is lowered to what it has.
+    #[allow(clippy::return_self_not_must_use, reason = "a setter, called for its effect")]
     pub fn set(self) -> Self {
         let level = self.min(Self::detected());
         CURRENT.store(level as u8, Ordering::Relaxed);

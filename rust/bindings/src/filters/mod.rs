@@ -1,3 +1,4 @@
 //! Filters.
 
+pub(crate) mod gaps;
 pub(crate) mod nonlocal_pose_means;

@@ -1,4 +1,6 @@
 //! Rotations.
 
+pub(crate) mod continuity;
 pub(crate) mod mean;
 pub(crate) mod quaternion;
+pub(crate) mod resample;

@@ -1,6 +1,6 @@
 //! The algebra of unit quaternions, on arrays of rows.
 
-use crate::array::{by_dtype, elements, input, output, run};
+use crate::array::{by_dtype, clip, elements, input, output, run};
 use numpy::{Element, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use quatfilt_core::rotations::quaternion;
@@ -93,4 +93,16 @@ pub(crate) fn geodesic_distance(
     b: &Bound<'_, PyAny>,
 ) -> PyResult<Py<PyAny>> {
     by_dtype!(a, T => zip::<T>(py, a, b, None, quaternion::geodesic_distance))
+}
+
+/// Missing samples, the largest deviation from unit length, and where it is: `(frames, joints, 4)` → three numbers.
+#[pyfunction]
+#[pyo3(signature = (q, /))]
+pub(crate) fn scan(py: Python<'_>, q: &Bound<'_, PyAny>) -> PyResult<(usize, f64, usize)> {
+    by_dtype!(q, T => {
+        let q = input::<T>("q", q)?;
+        let q = clip("q", &q)?;
+        let found = run(py, || quaternion::scan(q))?;
+        Ok((found.missing, found.worst, found.index))
+    })
 }

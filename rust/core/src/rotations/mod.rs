@@ -1,4 +1,6 @@
 //! Unit quaternions: algebra, statistics and resampling.
 
+pub mod continuity;
 pub mod mean;
 pub mod quaternion;
+pub mod resample;

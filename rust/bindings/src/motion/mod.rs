@@ -1,0 +1,3 @@
+//! Skeletons in motion.
+
+pub(crate) mod skeleton;

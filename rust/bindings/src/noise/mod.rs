@@ -1,0 +1,4 @@
+//! The noise level of clips.
+
+#[allow(clippy::module_inception, reason = "one word for a thing in every layer")]
+pub(crate) mod noise;

@@ -1,0 +1,3 @@
+//! Skeletons in motion.
+
+pub mod skeleton;

@@ -1,0 +1,5 @@
+//! The noise level of clips of rotations.
+
+mod median;
+#[allow(clippy::module_inception, reason = "one word for a thing in every layer")]
+pub mod noise;

@@ -1,0 +1,140 @@
+//! The noise level of a clip, estimated from the clip.
+
+use super::median::{all_numbers, median_of_absolute};
+use crate::clip::Planes;
+use crate::error::check_length;
+use crate::rotations::quaternion::{between, dot, log_short, of_row};
+use crate::simd::multiversion;
+use crate::{ClipView, Error, Real, parallel};
+
+/// Orders of the differences of the motion, and the sum of squares of their coefficients, `C(2n, n)`.
+const ORDERS: [(usize, f64); 3] = [(4, 70.0), (6, 924.0), (8, 12870.0)];
+
+/// Median of `|x|` for a normal `x` with deviation 1.
+const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
+
+/// Least number of differences whose median is taken.
+const FEWEST: usize = 2;
+
+/// Joints per task: of float32 they fill a cache line.
+const GROUP: usize = 4;
+
+/// Frames per chunk.
+const CHUNK: usize = 64;
+
+multiversion! {
+    /// Half the rotation vectors from each frame to the next, NaN beside missing samples, of the joints from `first`:
+    /// three planes for each.
+    fn increments<T: Real>(q: ClipView<'_, T>, first: usize, joints: usize, planes: &mut Planes<T>) {
+        let row = q.joints() * 4;
+        let steps = planes.length();
+        let mut rows = [[T::ONE; GROUP * 4]; CHUNK + 1];
+        for start in (0..steps).step_by(CHUNK) {
+            let length = CHUNK.min(steps - start);
+            let frames = &q.data()[start * row..(start + length + 1) * row];
+            // A plain copy first: its loads do not wait for each other, and memory is slow.
+            for (copy, frame) in rows.iter_mut().zip(frames.chunks_exact(row)) {
+                let frame = &frame[first * 4..(first + joints) * 4];
+                match frame.first_chunk() {
+                    Some(whole) => *copy = *whole,
+                    None => copy[..frame.len()].copy_from_slice(frame),
+                }
+            }
+            for joint in 0..joints {
+                let mut samples = [[T::ONE; CHUNK + 1]; 4];
+                for (i, row) in rows.iter().enumerate() {
+                    let q = of_row(&row[joint * 4..]);
+                    for c in 0..4 {
+                        samples[c][i] = q[c];
+                    }
+                }
+                let mut steps = [[T::ZERO; CHUNK]; 3];
+                for i in 0..CHUNK {
+                    let a = std::array::from_fn(|c| samples[c][i]);
+                    let b = std::array::from_fn(|c| samples[c][i + 1]);
+                    let lengths = dot(a, a) * dot(b, b);
+                    let valid = (lengths > T::ZERO) & lengths.is_finite();
+                    let step = log_short(between(a, b));
+                    for c in 0..3 {
+                        steps[c][i] = if valid { step[c] } else { T::nan() };
+                    }
+                }
+                for (c, plane) in planes.rows_mut::<3>(joint * 3).into_iter().enumerate() {
+                    plane[start..start + length].copy_from_slice(&steps[c][..length]);
+                }
+            }
+        }
+    }
+}
+
+multiversion! {
+    /// Third differences in place: the first `n − 3` values.
+    fn third_differences<T: Real>(values: &mut [T]) {
+        let three = T::ONE + T::TWO;
+        for i in 0..values.len().saturating_sub(3) {
+            values[i] = (values[i + 3] - values[i]) - three * (values[i + 2] - values[i + 1]);
+        }
+    }
+}
+
+multiversion! {
+    /// Second differences in place: the first `n − 2` values.
+    fn second_differences<T: Real>(values: &mut [T]) {
+        for i in 0..values.len().saturating_sub(2) {
+            values[i] = (values[i + 2] - values[i + 1]) - (values[i + 1] - values[i]);
+        }
+    }
+}
+
+/// The noise level from the planes of one joint, which are used up.
+fn level<T: Real>(planes: [&mut [T]; 3], buffer: &mut Vec<T>) -> f64 {
+    let mut planes = planes;
+    let complete = all_numbers(planes[0]);
+    let mut least = f64::INFINITY;
+    let mut taken = 1;
+    for (order, squares) in ORDERS {
+        let mut mean = 0.0;
+        for plane in &mut planes {
+            let values = std::mem::take(plane);
+            let length = values.len().saturating_sub(order - taken);
+            if taken == 1 {
+                third_differences(values);
+            } else {
+                second_differences(values);
+            }
+            *plane = &mut values[..length];
+            // The increments are half the rotation vectors.
+            let median =
+                median_of_absolute(plane, complete, FEWEST, buffer).map_or(f64::INFINITY, |x| 2.0 * x);
+            let deviation = median / squares.sqrt() / MEDIAN_OF_NORMAL;
+            mean += deviation * deviation / 3.0;
+        }
+        taken = order;
+        least = least.min(mean.sqrt());
+    }
+    if least.is_finite() { least } else { 0.0 }
+}
+
+/// Estimates the deviation of white noise per component of the rotation vector, in radians: `(joints)`.
+///
+/// The increments in the frame of the body, `ω_t = 2 log(q_t⁻¹ q_{t+1})`, are first differences of the motion. Of the
+/// n-th differences `Δⁿ⁻¹ω` smooth motion leaves little, and white noise of deviation `σ` has `σ √C(2n, n)`: for each
+/// coordinate `σ̂ = median |Δⁿ⁻¹ω| / √C(2n, n) / 0.6745`, for each joint the root mean square over its coordinates, and
+/// of the orders 4, 6 and 8 the smallest. Differences that touch a missing sample are left out; without any, 0.
+///
+/// # Errors
+/// [`Error::Length`] if `out` has another length than there are joints.
+pub fn noise_level<T: Real>(q: ClipView<'_, T>, out: &mut [T]) -> Result<(), Error> {
+    check_length("out", q.joints(), out.len())?;
+    let steps = q.frames().saturating_sub(1);
+    let groups: Vec<&mut [T]> = out.chunks_mut(GROUP).collect();
+    parallel::for_each(groups, q.data().len() * 3, |group, out| {
+        let mut planes = Planes::new(out.len() * 3, steps);
+        let mut buffer = Vec::new();
+        increments(q, group * GROUP, out.len(), &mut planes);
+        for (joint, out) in out.iter_mut().enumerate() {
+            *out = T::from_f64(level(planes.rows_mut::<3>(joint * 3), &mut buffer));
+        }
+        Ok(())
+    })
+}
