@@ -12,14 +12,7 @@ ONLY_IN_CORE = {
     "simd_level": "the reference leaves vector instructions to NumPy",
 }
 
-ONLY_IN_REFERENCE = {
-    "continuous": "not compiled yet",
-    "fill_gaps": "not compiled yet",
-    "forward_kinematics": "not compiled yet",
-    "noise_level": "not compiled yet",
-    "scan": "not compiled yet",
-    "slerp": "not compiled yet",
-}
+ONLY_IN_REFERENCE = {}
 
 
 def functions(module):

@@ -40,9 +40,8 @@ def test_a_motion_of_the_root_moves_the_body(backend, seed):
     positions = backend.forward_kinematics(q, translation, parents, offsets)
     other = q.copy()
     other[:, 0] = clips.product(turn, q[:, 0])
-    moved = backend.forward_kinematics(
-        other, clips.rotation(turn).apply(translation) + shift, parents, offsets
-    )
+    way = np.ascontiguousarray(clips.rotation(turn).apply(translation) + shift)
+    moved = backend.forward_kinematics(other, way, parents, offsets)
     close(moved, clips.rotation(turn).apply(positions.reshape(-1, 3)).reshape(positions.shape) + shift)
 
 

@@ -1,6 +1,6 @@
 //! The noise level of a clip, estimated from the clip.
 
-use super::median::median_of_absolute;
+use super::median::{all_numbers, median_of_absolute};
 use crate::clip::Planes;
 use crate::error::check_length;
 use crate::rotations::quaternion::{between, dot, log_short, of_row};
@@ -16,7 +16,7 @@ const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
 /// Least number of differences whose median is taken.
 const FEWEST: usize = 2;
 
-/// Joints per task: their quaternions fill a cache line of float32.
+/// Joints per task: of float32 they fill a cache line.
 const GROUP: usize = 4;
 
 /// Frames per chunk.
@@ -28,13 +28,22 @@ multiversion! {
     fn increments<T: Real>(q: ClipView<'_, T>, first: usize, joints: usize, planes: &mut Planes<T>) {
         let row = q.joints() * 4;
         let steps = planes.length();
+        let mut rows = [[T::ONE; GROUP * 4]; CHUNK + 1];
         for start in (0..steps).step_by(CHUNK) {
             let length = CHUNK.min(steps - start);
-            let rows = &q.data()[start * row..(start + length + 1) * row];
+            let frames = &q.data()[start * row..(start + length + 1) * row];
+            // A plain copy first: its loads do not wait for each other, and memory is slow.
+            for (copy, frame) in rows.iter_mut().zip(frames.chunks_exact(row)) {
+                let frame = &frame[first * 4..(first + joints) * 4];
+                match frame.first_chunk() {
+                    Some(whole) => *copy = *whole,
+                    None => copy[..frame.len()].copy_from_slice(frame),
+                }
+            }
             for joint in 0..joints {
                 let mut samples = [[T::ONE; CHUNK + 1]; 4];
-                for (i, row) in rows.chunks_exact(row).enumerate() {
-                    let q = of_row(&row[(first + joint) * 4..]);
+                for (i, row) in rows.iter().enumerate() {
+                    let q = of_row(&row[joint * 4..]);
                     for c in 0..4 {
                         samples[c][i] = q[c];
                     }
@@ -80,6 +89,7 @@ multiversion! {
 /// The noise level from the planes of one joint, which are used up.
 fn level<T: Real>(planes: [&mut [T]; 3], buffer: &mut Vec<T>) -> f64 {
     let mut planes = planes;
+    let complete = all_numbers(planes[0]);
     let mut least = f64::INFINITY;
     let mut taken = 1;
     for (order, squares) in ORDERS {
@@ -94,7 +104,8 @@ fn level<T: Real>(planes: [&mut [T]; 3], buffer: &mut Vec<T>) -> f64 {
             }
             *plane = &mut values[..length];
             // The increments are half the rotation vectors.
-            let median = median_of_absolute(plane, FEWEST, buffer).map_or(f64::INFINITY, |x| 2.0 * x);
+            let median =
+                median_of_absolute(plane, complete, FEWEST, buffer).map_or(f64::INFINITY, |x| 2.0 * x);
             let deviation = median / squares.sqrt() / MEDIAN_OF_NORMAL;
             mean += deviation * deviation / 3.0;
         }
