@@ -17,9 +17,6 @@ FLOAT64 = 1e-12
 FLOAT32 = 1e-5
 """Filters in float32: an ulp near 1 is 6e-8; amplified as in `FLOAT64`."""
 
-SHARP_FLOAT64 = 1e-10
-"""Laws that move a sample by a rounding where sums are so small that the weights amplify it further."""
-
 WHITE_NOISE_LEVEL = 0.03
 """Relative bias of the estimated noise level for 30 frames or more: at most 2.4 % was measured."""
 

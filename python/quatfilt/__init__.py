@@ -8,7 +8,11 @@ import warnings
 
 from quatfilt._backend import get_backend, get_num_threads, set_num_threads, simd_level, use_backend
 from quatfilt._core import is_debug_build as _is_debug_build
+from quatfilt.filters.gaps import fill_gaps
+from quatfilt.noise.noise import add_gaussian_noise, add_impulse_noise, noise_level
+from quatfilt.rotations.continuity import continuous
 from quatfilt.rotations.quaternion import conjugate, exp, geodesic_distance, log, multiply, normalize
+from quatfilt.rotations.resample import resample, slerp
 
 if _is_debug_build():
     warnings.warn(
@@ -18,15 +22,22 @@ if _is_debug_build():
     )
 
 __all__ = [
+    "add_gaussian_noise",
+    "add_impulse_noise",
     "conjugate",
+    "continuous",
     "exp",
+    "fill_gaps",
     "geodesic_distance",
     "get_backend",
     "get_num_threads",
     "log",
     "multiply",
+    "noise_level",
     "normalize",
+    "resample",
     "set_num_threads",
     "simd_level",
+    "slerp",
     "use_backend",
 ]

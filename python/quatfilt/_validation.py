@@ -163,6 +163,68 @@ def per_joint(
     return array
 
 
+def interval(
+    value: Any, name: str, *, at_least: float | None = None, at_most: float | None = None
+) -> tuple[float, float]:
+    """Return two numbers `(low, high)`, in this order and within their bounds."""
+    try:
+        low, high = value
+    except (TypeError, ValueError):
+        raise TypeError(f"{name}: expected two numbers (low, high), got {value!r}") from None
+    low = number(low, f"{name}[0]", at_least=at_least, at_most=at_most)
+    high = number(high, f"{name}[1]", at_least=at_least, at_most=at_most)
+    if low > high:
+        raise ValueError(f"{name}: expected two numbers (low, high) in this order, got {value!r}")
+    return low, high
+
+
+def times(value: Any, name: str, frames: int) -> NDArray[np.float64]:
+    """Return strictly increasing times, one per frame."""
+    array = np.asarray(floats(value, name), np.float64)
+    if array.shape != (frames,):
+        raise ValueError(f"{name}: expected one time per frame, shape ({frames},), got {array.shape}")
+    _finite(array, name)
+    steps = np.flatnonzero(array[1:] <= array[:-1])
+    if steps.size:
+        at = int(steps[0])
+        raise ValueError(
+            f"{name}: expected strictly increasing times, got {array[at + 1]:g} after {array[at]:g} at index {at + 1}"
+        )
+    return array
+
+
+def times_within(value: Any, name: str, span: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return times ``(n,)`` from the first to the last of `span`."""
+    array = np.asarray(floats(value, name), np.float64)
+    if array.ndim != 1:
+        raise ValueError(f"{name}: expected shape (n,), got {array.shape}")
+    _finite(array, name)
+    if not span.size and array.size:
+        raise ValueError(f"{name}: expected no times, since there are no frames, got {array.size}")
+    outside = np.flatnonzero((array < span[0]) | (array > span[-1])) if array.size else array
+    if outside.size:
+        at = int(outside[0])
+        raise ValueError(
+            f"{name}: expected times from {span[0]:g} to {span[-1]:g}, got {array[at]:.17g} at index {at}"
+        )
+    return array
+
+
+def _finite(array: Array, name: str) -> None:
+    odd = np.flatnonzero(~np.isfinite(array))
+    if odd.size:
+        raise ValueError(f"{name}: expected finite times, got {array[odd[0]]} at index {int(odd[0])}")
+
+
+def generator(value: Any, name: str) -> np.random.Generator:
+    """Return a generator of random numbers: `value`, or a new one of that seed."""
+    if isinstance(value, np.random.Generator):
+        return value
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
+        raise TypeError(f"{name}: expected a numpy.random.Generator or a seed, got {type(value).__name__}")
+    return np.random.default_rng(integer(value, name, at_least=0))
+
+
 def confidence(value: ArrayLike | None, frames: int, joints: int, dtype: np.dtype[Any]) -> Array | None:
     """Return `value`, ``(frames,)`` or ``(frames, joints)`` in 0…1, as ``(frames, joints)``; NaN counts as 0."""
     if value is None:
@@ -197,3 +259,57 @@ def _within(value: float, above: float | None, at_least: float | None, at_most: 
         and (at_least is None or value >= at_least)
         and (at_most is None or value <= at_most)
     )
+
+
+def parents(value: ArrayLike, joints: int) -> NDArray[np.int64]:
+    """Return `value` as the parents of `joints` joints, read-only: each comes before its child, −1 for a root."""
+    array = np.asarray(value)
+    if array.size == 0:
+        array = array.astype(np.int64)
+    if array.dtype.kind not in "iu":
+        raise TypeError(f"parents: expected integers, got dtype {array.dtype}")
+    if array.shape != (joints,):
+        raise ValueError(f"parents: expected one for each of {joints} names, got shape {array.shape}")
+    result = array.astype(np.int64)
+    for joint, parent in enumerate(result):
+        if not -1 <= parent < joint:
+            raise ValueError(
+                f"parents: expected −1 or the index of a joint before it for joint {joint}, got {parent}"
+            )
+    result.setflags(write=False)
+    return result
+
+
+def offsets(value: ArrayLike, joints: int) -> NDArray[np.float64]:
+    """Return `value` as the offsets of `joints` joints, read-only."""
+    array = floats(value, "offsets").astype(np.float64)
+    if array.shape != (joints, 3) and not (joints == 0 and array.size == 0):
+        raise ValueError(f"offsets: expected shape ({joints}, 3), got {array.shape}")
+    if not np.isfinite(array).all():
+        raise ValueError("offsets: expected finite numbers")
+    array = array.reshape(joints, 3)
+    array.setflags(write=False)
+    return array
+
+
+def posed(
+    rotations: ArrayLike,
+    translation: ArrayLike,
+    joint_translations: ArrayLike | None,
+    parents: NDArray[np.int64],
+) -> tuple[Array, Array, Array | None]:
+    """Return rotations, translation and joint translations of a skeleton in motion, of one dtype."""
+    q, _ = clip(rotations)
+    frames, joints = q.shape[:2]
+    if joints != len(parents):
+        raise ValueError(f"rotations: expected {len(parents)} joints as in the skeleton, got {joints}")
+    moved = floats(translation, "translation")
+    if moved.shape != (frames, 3):
+        raise ValueError(f"translation: expected shape ({frames}, 3), got {moved.shape}")
+    moved = np.require(moved, q.dtype, ("C_CONTIGUOUS", "ALIGNED"))
+    if joint_translations is None:
+        return q, moved, None
+    own = floats(joint_translations, "joint_translations")
+    if own.shape != (frames, joints, 3):
+        raise ValueError(f"joint_translations: expected shape ({frames}, {joints}, 3), got {own.shape}")
+    return q, moved, np.require(own, q.dtype, ("C_CONTIGUOUS", "ALIGNED"))

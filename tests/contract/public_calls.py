@@ -28,12 +28,27 @@ def samples(dtype):
     return a.astype(dtype), b.astype(dtype), v.astype(dtype)
 
 
+def with_gaps(q):
+    """Return `q` with one sample in eleven missing, and a longer run."""
+    gaps = q.copy()
+    gaps[::11] = np.nan
+    gaps[100:120, 1] = 0
+    return gaps
+
+
 CALLS = {
+    "add_gaussian_noise": lambda a, _b, _v: qf.add_gaussian_noise(a, sigma=0.1, rng=1),
+    "add_impulse_noise": lambda a, _b, _v: qf.add_impulse_noise(a, probability=0.1, rng=1),
     "conjugate": lambda a, _b, _v: qf.conjugate(a),
+    "continuous": lambda a, _b, _v: qf.continuous(with_gaps(a)),
     "exp": lambda _a, _b, v: qf.exp(v),
+    "fill_gaps": lambda a, _b, _v: qf.fill_gaps(with_gaps(a))[0],
     "geodesic_distance": lambda a, b, _v: qf.geodesic_distance(a, b),
     "log": lambda a, _b, _v: qf.log(a),
     "multiply": lambda a, b, _v: qf.multiply(a, b),
+    "noise_level": lambda a, _b, _v: qf.noise_level(with_gaps(a)),
     "normalize": lambda a, _b, _v: qf.normalize(2 * a),
+    "resample": lambda a, _b, _v: qf.resample(a, fps=30, new_fps=31.7),
+    "slerp": lambda a, _b, _v: qf.slerp(a, np.arange(FRAMES), np.linspace(0, FRAMES - 1, 10_001)),
 }
 """From the name to a call with what `samples` returns."""

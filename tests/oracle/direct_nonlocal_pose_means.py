@@ -171,7 +171,7 @@ def direct_nonlocal_pose_means(
             last, next_one = likeness[best[neighbors - 1]], likeness[best[neighbors]]
             unclear = last < math.inf and math.isclose(last, next_one, rel_tol=CLOSE)
             best = best[:neighbors]
-        result = {s: math.exp(-likeness[s]) for s in best}
+        result = {s: math.exp(-likeness[s]) for s in best if likeness[s] <= 120}
         result[t] = max([*result.values(), math.exp(-80)])
         return result, unclear
 

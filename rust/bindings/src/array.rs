@@ -50,7 +50,9 @@ pub(crate) fn elements<'a, T: Element>(
     name: &str,
     array: &'a PyReadonlyArrayDyn<'_, T>,
 ) -> PyResult<&'a [T]> {
-    array.as_slice().map_err(|_| PyValueError::new_err(format!("{name}: expected a C-contiguous array")))
+    // `as_slice` would take a column-major array too.
+    let slice = if array.is_c_contiguous() { array.as_slice().ok() } else { None };
+    slice.ok_or_else(|| PyValueError::new_err(format!("{name}: expected a C-contiguous array")))
 }
 
 /// A borrowed clip `(frames, joints, 4)`.

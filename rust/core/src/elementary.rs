@@ -64,11 +64,6 @@ macro_rules! real_basics {
             self.is_nan()
         }
         #[inline(always)]
-        #[allow(clippy::useless_conversion, reason = "the bits of a float32 are fewer")]
-        fn rank(self) -> u64 {
-            u64::from(self.abs().to_bits())
-        }
-        #[inline(always)]
         fn nan() -> Self {
             $T::NAN
         }

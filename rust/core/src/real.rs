@@ -65,9 +65,6 @@ pub trait Real:
     /// Not a number.
     #[must_use]
     fn is_nan(self) -> bool;
-    /// A whole number that grows with the absolute value; that of NaN is above all others.
-    #[must_use]
-    fn rank(self) -> u64;
     /// NaN.
     #[must_use]
     fn nan() -> Self;

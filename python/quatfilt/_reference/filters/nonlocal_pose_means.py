@@ -18,6 +18,11 @@ SELF_WEIGHT_FLOOR = np.exp(-80.0)
 """Least weight of a frame in its own mean. The smallest normal float32 is near `exp(−87)`: with this floor a tiny
 bandwidth gives back the frame itself, in both precisions, instead of the most similar of the others."""
 
+FARTHEST = 120.0
+"""Patch distance beyond which a candidate has no weight. A frame without confidence is made of the others alone, however
+small their weights are, and it must not depend on the precision which of them underflow. (float32 holds `exp(40 − E)`
+down to here; the common factor cancels.) Beside the least weight of a trusted frame itself, `exp(−120)` is nothing."""
+
 
 @dataclass(frozen=True)
 class Comparison:
@@ -68,8 +73,8 @@ def nonlocal_pose_means(
 ) -> tuple[Reals, Reals | None]:
     """Average each frame `t` with the frames `s` of its window, weighted by the likeness of their patches.
 
-    The weight of `s` is `f(t, s) = exp(−E(t, s))` with the patch distance `E` of :func:`patch_distances`. The frame
-    itself has the largest weight of the others, at least `exp(−80)`. With the rotation vectors `x` of the chart,
+    The weight of `s` is `f(t, s) = exp(−E(t, s))` with the patch distance `E` of :func:`patch_distances`, and 0 where
+    `E > 120`. The frame itself has the largest weight of the others, at least `exp(−80)`. With the rotation vectors `x` of the chart,
 
         `x̂_t = Σ_s f(t, s) c_s x_s / Σ_s f(t, s) c_s`,
 
@@ -237,7 +242,8 @@ def average(clip: Clip, how: Comparison, kept: Indices | None) -> tuple[Reals, R
     for lag in how.lags:
         t = frames_with_candidate(clip, how, lag)
         here, there = own[t], own[t] + lag
-        likeness = np.exp(-patch_distances(clip, how, lag))
+        distances = patch_distances(clip, how, lag)
+        likeness = np.where(distances <= FARTHEST, np.exp(-distances), 0)
         if kept is not None:
             likeness[~(kept[t] == lag).any(axis=-1)] = 0
         largest[t] = np.maximum(largest[t], likeness)

@@ -1,7 +1,7 @@
 //! The median of absolute values, exact, in about one pass.
 //!
-//! A regular sample of the values brackets the median closely; one pass counts what lies below the bracket and keeps
-//! what lies inside, and the median is selected from those few. Where the sample misleads, all values are kept.
+//! A regular sample of the values brackets the median closely; passes that vectorise count what lies below the bracket
+//! and keep what lies inside, and the median is selected from those few. Where the sample misleads, all are kept.
 
 use crate::Real;
 use crate::simd::multiversion;
@@ -51,18 +51,36 @@ multiversion! {
 }
 
 multiversion! {
-    /// How many absolute values lie below `low`; those from `low` to `high` are kept.
-    fn bracket<T: Real>(values: &[T], low: T, high: T, kept: &mut Vec<T>) -> usize {
-        kept.resize(values.len() + 1, T::ZERO);
-        let (lowest, width) = (low.rank(), high.rank() - low.rank());
-        let mut next = 0;
-        for &x in values {
-            kept[next] = x.abs();
-            // One comparison of whole numbers, where two of floats would go through mask registers.
-            next += usize::from(x.rank().wrapping_sub(lowest) <= width);
+    /// How many absolute values lie below `bound`.
+    fn below<T: Real>(values: &[T], bound: T) -> usize {
+        count(values, |x| x.abs() < bound)
+    }
+}
+
+multiversion! {
+    /// Keeps the absolute values from `low` to `high`, which are few: most groups hold none.
+    fn keep<T: Real>(values: &[T], low: T, high: T, kept: &mut Vec<T>) {
+        kept.clear();
+        let inside = |x: T| (x.abs() >= low) & (x.abs() <= high);
+        let groups = values.chunks_exact(LANES);
+        let rest = groups.remainder();
+        for group in groups {
+            let mut hit = false;
+            for &x in group {
+                hit |= inside(x);
+            }
+            if hit {
+                // Every value is written, and the place moves on behind those that stay: no branch to foresee.
+                let mut few = [T::ZERO; LANES];
+                let mut next = 0;
+                for &x in group {
+                    few[next % LANES] = x.abs();
+                    next += usize::from(inside(x));
+                }
+                kept.extend_from_slice(&few[..next]);
+            }
         }
-        kept.truncate(next);
-        count(values, |x| x.abs() < low)
+        kept.extend(rest.iter().filter(|&&x| inside(x)).map(|x| x.abs()));
     }
 }
 
@@ -77,33 +95,55 @@ fn middle<T: Real>(kept: &mut [T], below: usize, n: usize) -> Option<(T, T)> {
     Some((low, high))
 }
 
-/// Bounds between which the median of the absolute values is expected.
-fn expected<T: Real>(values: &[T], sample: &mut Vec<T>) -> Option<(T, T)> {
+/// A regular sample of the absolute values: what lies about its middle, sorted, and where in it the middle is.
+fn about_the_middle<'a, T: Real>(values: &[T], sample: &'a mut Vec<T>) -> Option<(&'a [T], usize)> {
     sample.clear();
     let step = values.len().div_ceil(SAMPLE);
     sample.extend(values.iter().step_by(step).filter(|x| !x.is_nan()).map(|x| x.abs()));
     let half = sample.len() / 2;
-    let spread = sample.len().isqrt() * 3 / 2 + 1;
-    let (lowest, highest) = (half.checked_sub(spread)?, half + spread);
-    if highest >= sample.len() {
+    let spread = sample.len().isqrt() * 2 + 1;
+    let lowest = half.checked_sub(spread)?;
+    if half + spread >= sample.len() {
         return None;
     }
-    let (under, &mut high, _) = sample.select_nth_unstable_by(highest, order);
-    let (_, &mut low, _) = under.select_nth_unstable_by(lowest, order);
-    Some((low, high))
+    sample.select_nth_unstable_by(half + spread, order);
+    sample[..half + spread].select_nth_unstable_by(lowest, order);
+    let inner = &mut sample[lowest..=half + spread];
+    inner.sort_unstable_by(order);
+    Some((inner, spread))
+}
+
+/// Bounds between which the median of the `n` absolute values is expected.
+///
+/// The rank of the sample's median among all values tells by how much it misses theirs; near it, the sample then tells
+/// the rest with a much smaller error.
+fn expected<T: Real>(values: &[T], n: usize, sample: &mut Vec<T>) -> Option<(T, T)> {
+    let (inner, middle) = about_the_middle(values, sample)?;
+    let under = below(values, inner[middle]);
+    let samples = SAMPLE.min(n);
+    let miss = (n / 2).abs_diff(under) * samples / n;
+    let margin = miss.isqrt() * 3 + 3;
+    let centre = if under <= n / 2 { middle + miss } else { middle.checked_sub(miss)? };
+    let low = *inner.get(centre.checked_sub(margin)?)?;
+    inner.get(centre + margin).map(|&high| (low, high))
 }
 
 /// The median of the absolute values of those that are numbers, as NumPy's: of an even count, the mean of the two in
-/// the middle. `None` for fewer than `fewest`.
-pub(super) fn median_of_absolute<T: Real>(values: &[T], fewest: usize, buffer: &mut Vec<T>) -> Option<f64> {
-    let n = numbers(values);
+/// the middle. `None` for fewer than `fewest`; `complete` says that all are numbers.
+pub(super) fn median_of_absolute<T: Real>(
+    values: &[T],
+    complete: bool,
+    fewest: usize,
+    buffer: &mut Vec<T>,
+) -> Option<f64> {
+    let n = if complete { values.len() } else { numbers(values) };
     if n < fewest.max(1) {
         return None;
     }
-    let close = if n > FEW { expected(values, buffer) } else { None };
+    let close = if n > FEW { expected(values, n, buffer) } else { None };
     let found = close.and_then(|(low, high)| {
-        let below = bracket(values, low, high, buffer);
-        middle(buffer, below, n)
+        keep(values, low, high, buffer);
+        middle(buffer, below(values, low), n)
     });
     let (low, high) = found.or_else(|| {
         buffer.clear();
@@ -111,6 +151,11 @@ pub(super) fn median_of_absolute<T: Real>(values: &[T], fewest: usize, buffer: &
         middle(buffer, 0, n)
     })?;
     Some(f64::midpoint(low.to_f64(), high.to_f64()))
+}
+
+/// Whether all values are numbers.
+pub(super) fn all_numbers<T: Real>(values: &[T]) -> bool {
+    numbers(values) == values.len()
 }
 
 #[cfg(test)]
@@ -122,7 +167,8 @@ mod tests {
         sorted.sort_by(order);
         let n = sorted.len();
         let expected = (n > 0).then(|| f64::midpoint(sorted[(n - 1) / 2], sorted[n / 2]));
-        assert_eq!(median_of_absolute(values, 1, &mut Vec::new()), expected, "{n} values");
+        let complete = all_numbers(values);
+        assert_eq!(median_of_absolute(values, complete, 1, &mut Vec::new()), expected, "{n} values");
     }
 
     fn random(n: usize) -> Vec<f64> {
@@ -159,6 +205,6 @@ mod tests {
 
     #[test]
     fn too_few_have_no_median() {
-        assert_eq!(median_of_absolute(&[1.0_f32, f32::NAN], 2, &mut Vec::new()), None);
+        assert_eq!(median_of_absolute(&[1.0_f32, f32::NAN], false, 2, &mut Vec::new()), None);
     }
 }

@@ -11,10 +11,17 @@ use crate::{ClipMut, ClipView, Error, Real, parallel};
 /// Samples per task.
 const TILE: usize = 32 * 1024;
 
-/// Both ends of a tile, per joint: its first and last valid samples; zeros where all are missing.
+/// Both ends of a tile, per joint: its first and last valid samples as they came, zeros where all are missing.
 struct Ends<T> {
     first: Vec<[T; 4]>,
-    last: Vec<[T; 4]>,
+    last: Vec<Last<T>>,
+}
+
+/// The last valid sample of a joint as it came, and whether its sign was flipped.
+#[derive(Debug, Clone, Copy, Default)]
+struct Last<T> {
+    sample: [T; 4],
+    flipped: bool,
 }
 
 /// What decides about the sign: `a · b < 0`, in float64 so that rounding does not.
@@ -24,19 +31,19 @@ fn opposite<T: Real>(a: [T; 4], b: [T; 4]) -> bool {
 }
 
 multiversion! {
-    /// Makes `out` continuous, frame by frame; `last` holds the valid samples before, and those of the end afterwards.
-    fn unroll<T: Real>(out: &mut [T], last: &mut [[T; 4]]) {
+    /// Makes `out` continuous, frame by frame; `last` speaks of the samples before, and of those of the end afterwards.
+    fn unroll<T: Real>(out: &mut [T], last: &mut [Last<T>]) {
         for frame in out.chunks_exact_mut(last.len() * 4) {
             for (row, last) in frame.chunks_exact_mut(4).zip(last.iter_mut()) {
                 let q = of_row(row);
-                let missing = is_missing(q);
-                let flip = !missing & opposite(q, *last);
+                let valid = !is_missing(q);
+                let flip = valid & (last.flipped ^ opposite(q, last.sample));
                 let turned = negative(q);
                 for c in 0..4 {
-                    let x = if flip { turned[c] } else { q[c] };
-                    row[c] = x;
-                    last[c] = if missing { last[c] } else { x };
+                    row[c] = if flip { turned[c] } else { q[c] };
+                    last.sample[c] = if valid { q[c] } else { last.sample[c] };
                 }
+                last.flipped = if valid { flip } else { last.flipped };
             }
         }
     }
@@ -45,8 +52,8 @@ multiversion! {
 /// The first valid sample of each joint.
 fn first_valid<T: Real>(tile: &[T], joints: usize) -> Vec<[T; 4]> {
     let one = |joint: usize| {
-        let path = tile.chunks_exact(joints * 4).map(|frame| of_row(&frame[joint * 4..]));
-        path.into_iter().find(|&q| !is_missing(q)).unwrap_or_default()
+        let mut path = tile.chunks_exact(joints * 4).map(|frame| of_row(&frame[joint * 4..]));
+        path.find(|&q| !is_missing(q)).unwrap_or_default()
     };
     (0..joints).map(one).collect()
 }
@@ -59,24 +66,24 @@ fn unroll_tiles<T: Real>(source: Option<&[T]>, clip: &mut [T], joints: usize) ->
     let row = joints * 4;
     let tile = (TILE / joints).max(1) * row;
     let samples = clip.len() / 4;
-    let ends = parallel::map(clip.chunks_mut(tile).collect(), samples * 4, |i, part: &mut [T]| {
+    let ends = parallel::map(clip.chunks_mut(tile).collect(), samples * 8, |i, part: &mut [T]| {
         if let Some(source) = source {
             part.copy_from_slice(&source[i * tile..i * tile + part.len()]);
         }
         let first = first_valid(part, joints);
-        let mut last = vec![[T::ZERO; 4]; joints];
+        let mut last = vec![Last::default(); joints];
         unroll(part, &mut last);
         Ok(Ends { first, last })
     })?;
-    let mut before = vec![[T::ZERO; 4]; joints];
+    let mut before: Vec<Last<T>> = vec![Last::default(); joints];
     let mut turned = Vec::new();
     for (tile, ends) in clip.chunks_mut(tile).zip(ends) {
         let mut flips: Vec<bool> = Vec::with_capacity(joints);
         for ((before, first), last) in before.iter_mut().zip(ends.first).zip(ends.last) {
-            let flip = opposite(*before, first);
+            let flip = before.flipped ^ opposite(before.sample, first);
             flips.push(flip);
-            if !is_missing(last) {
-                *before = if flip { negative(last) } else { last };
+            if !is_missing(last.sample) {
+                *before = Last { sample: last.sample, flipped: last.flipped ^ flip };
             }
         }
         if flips.contains(&true) {
@@ -99,7 +106,7 @@ fn unroll_tiles<T: Real>(source: Option<&[T]>, clip: &mut [T], joints: usize) ->
 
 /// Flips signs so that consecutive valid samples of a joint have an inner product `≥ 0`.
 ///
-/// The first valid sample keeps its sign. Missing samples stay as they are, and continuity goes across them.
+/// The first valid sample keeps its sign, and so does the path where two samples are exactly half a turn apart. Missing samples stay as they are, and continuity goes across them.
 ///
 /// # Errors
 /// [`Error::Length`] if the clips differ in length.
@@ -144,7 +151,7 @@ mod tests {
             continuous(view, ClipMut::new(&mut out, frames, joints).expect("the length fits"))
                 .expect("nothing can fail");
             let mut alone = q.clone();
-            unroll(&mut alone, &mut vec![[0.0; 4]; joints]);
+            unroll(&mut alone, &mut vec![Last::default(); joints]);
             let bits = |x: &[f64]| x.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
             assert!(bits(&out) == bits(&alone), "{frames} frames, {joints} joints");
         }

@@ -1,0 +1,1 @@
+"""Filters: a clip in, a cleaner clip out."""

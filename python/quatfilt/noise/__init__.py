@@ -1,0 +1,1 @@
+"""Noise: how much there is, and how to add some."""
