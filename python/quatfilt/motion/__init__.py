@@ -1,1 +1,1 @@
-"""Skeletons, motion, and how to measure it."""
+"""Motions and their skeletons."""
