@@ -9,6 +9,7 @@ import warnings
 from quatfilt._backend import get_backend, get_num_threads, set_num_threads, simd_level, use_backend
 from quatfilt._core import is_debug_build as _is_debug_build
 from quatfilt.filters.gaps import fill_gaps
+from quatfilt.motion import metrics
 from quatfilt.noise.noise import add_gaussian_noise, add_impulse_noise, noise_level
 from quatfilt.rotations.continuity import continuous
 from quatfilt.rotations.quaternion import conjugate, exp, geodesic_distance, log, multiply, normalize
@@ -32,6 +33,7 @@ __all__ = [
     "get_backend",
     "get_num_threads",
     "log",
+    "metrics",
     "multiply",
     "noise_level",
     "normalize",
