@@ -79,11 +79,13 @@ def test_strikes_are_sharp_at_the_feet_and_felt_in_the_head(clip):
     ankle = change[:, clip.skeleton.index("LeftAnkle")]
     # The sole stops within a frame: hundreds of degrees per second, against a few from frame to frame elsewhere.
     assert ankle.max() > 200
-    assert np.median(ankle) < 6
+    assert ankle.max() > 30 * np.median(ankle)
     assert change[:, clip.skeleton.index("Head")].max() > 10
 
 
-@pytest.mark.parametrize(("seconds", "fps", "frames"), [(0, 120, 0), (0.01, 120, 1), (1, 30, 30), (0.5, 7, 4)])
+@pytest.mark.parametrize(
+    ("seconds", "fps", "frames"), [(0, 120, 0), (0.01, 120, 1), (1, 30, 30), (0.5, 7, 4)]
+)
 def test_any_length_and_rate(seconds, fps, frames):
     motion = walk(seconds=seconds, fps=fps)
     assert motion.rotations.shape == (frames, 21, 4)

@@ -168,7 +168,9 @@ def test_nothing_to_compare_is_nan_without_a_warning(measure, frames):
 
 @pytest.mark.parametrize("measure", ERRORS)
 def test_clips_of_other_shapes_are_refused(measure):
-    with pytest.raises(ValueError, match=r"estimate: expected the reference's shape \(5, 2, 4\), got \(4, 2, 4\)"):
+    with pytest.raises(
+        ValueError, match=r"estimate: expected the reference's shape \(5, 2, 4\), got \(4, 2, 4\)"
+    ):
         measure(still(5, 2), still(4, 2))
     with pytest.raises(ValueError, match="per: expected one of 'clip', 'joint'"):
         measure(still(5, 2), still(5, 2), per="frame")

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 import quatfilt as qf
-from quatfilt import metrics
 from quatfilt.evaluation.synthetic import walk
+from quatfilt.motion import metrics
 
 FPS = 100.0
 
@@ -31,7 +31,7 @@ def stop_and_go(speed):
 @pytest.mark.parametrize("unit", [1.0, 5.644, 100.0])
 def test_position_error_is_in_centimetres(unit):
     path = np.zeros((4, 3))
-    moved = path + [3.0, 4.0, 0.0]
+    moved = path + np.array([3.0, 4.0, 0.0])
     truth, estimate = slider(path, unit=unit), slider(moved, unit=unit)
     assert metrics.position_error(truth, estimate) == pytest.approx(5)
     assert metrics.position_error(truth, estimate, per="joint") == pytest.approx([5, 5])
@@ -42,7 +42,9 @@ def test_position_error_of_a_turned_root():
     truth = slider(np.zeros((3, 3)))
     rotations = truth.rotations.copy()
     rotations[:, 0] = [0.0, 1.0, 0.0, 0.0]
-    assert metrics.position_error(truth, truth.replace(rotations=rotations), per="joint") == pytest.approx([0, 100])
+    assert metrics.position_error(truth, truth.replace(rotations=rotations), per="joint") == pytest.approx(
+        [0, 100]
+    )
 
 
 def test_positions_below_a_missing_sample_are_left_out():
@@ -58,7 +60,9 @@ def test_motions_that_do_not_match_are_refused():
     truth = slider(np.zeros((3, 3)))
     with pytest.raises(ValueError, match="motion: expected the reference's 3 frames, got 2"):
         metrics.position_error(truth, slider(np.zeros((2, 3))))
-    with pytest.raises(ValueError, match="motion: expected the reference's 2 joints, got 'foot' where 'LeftFoot' is"):
+    with pytest.raises(
+        ValueError, match="motion: expected the reference's 2 joints, got 'foot' where 'LeftFoot' is"
+    ):
         metrics.position_error(truth, slider(np.zeros((3, 3)), names=("root", "foot")))
     with pytest.raises(ValueError, match="motion: expected the reference's 2 joints, got 3"):
         metrics.position_error(truth, slider(np.zeros((3, 3)), names=("root", "LeftFoot", "c")))

@@ -43,7 +43,7 @@ def pair(
 
 def turns(a: Values, b: Values) -> Values:
     """Rotation vectors of ``a⁻¹b``, the shorter way, in radians; NaN where either is missing; ``(..., 3)``."""
-    missing: Mask = np.isnan(a + b).any(axis=-1)
+    missing: Mask = np.asarray(np.isnan(a + b).any(axis=-1))
     identity = np.array([1.0, 0.0, 0.0, 0.0])
     left = np.where(missing[..., None], identity, a).reshape(-1, 4)
     right = np.where(missing[..., None], identity, b).reshape(-1, 4)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from quatfilt import _validation
 from quatfilt._typing import Mask
@@ -158,8 +159,8 @@ def _contacts(paths: Values, vertical: int, fps: float) -> Mask:
     speed = np.linalg.norm(np.gradient(paths, axis=0), axis=-1) * fps
     height = paths[..., vertical]
     lowest = np.min(np.where(np.isnan(height), np.inf, height), axis=0)
-    touching: Mask = (speed < _SLOW) & (height - lowest < _LOW)
-    windows: Mask = np.lib.stride_tricks.sliding_window_view(touching, _FEWEST, axis=0).all(axis=-1)
+    touching: Mask = np.asarray((speed < _SLOW) & (height - lowest < _LOW))
+    windows: Mask = np.asarray(sliding_window_view(touching, _FEWEST, axis=0).all(axis=-1))
     result = np.zeros_like(touching)
     for offset in range(_FEWEST):
         result[offset : offset + len(windows)] |= windows
