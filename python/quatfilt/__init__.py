@@ -9,8 +9,10 @@ import warnings
 from quatfilt._backend import get_backend, get_num_threads, set_num_threads, simd_level, use_backend
 from quatfilt._core import is_debug_build as _is_debug_build
 from quatfilt.filters.gaps import fill_gaps
+from quatfilt.filters.nonlocal_pose_means import nonlocal_pose_means
 from quatfilt.noise.noise import add_gaussian_noise, add_impulse_noise, noise_level
 from quatfilt.rotations.continuity import continuous
+from quatfilt.rotations.mean import mean
 from quatfilt.rotations.quaternion import conjugate, exp, geodesic_distance, log, multiply, normalize
 from quatfilt.rotations.resample import resample, slerp
 
@@ -32,8 +34,10 @@ __all__ = [
     "get_backend",
     "get_num_threads",
     "log",
+    "mean",
     "multiply",
     "noise_level",
+    "nonlocal_pose_means",
     "normalize",
     "resample",
     "set_num_threads",
