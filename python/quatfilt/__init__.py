@@ -8,7 +8,11 @@ import warnings
 
 from quatfilt._backend import get_backend, get_num_threads, set_num_threads, simd_level, use_backend
 from quatfilt._core import is_debug_build as _is_debug_build
+from quatfilt.errors import FileAccessError, FileFormatError, QuatfiltError
 from quatfilt.filters.gaps import fill_gaps
+from quatfilt.formats.files import read_motion, write_motion
+from quatfilt.motion.motion import Motion
+from quatfilt.motion.skeleton import EndSite, Skeleton
 from quatfilt.noise.noise import add_gaussian_noise, add_impulse_noise, noise_level
 from quatfilt.rotations.continuity import continuous
 from quatfilt.rotations.quaternion import conjugate, exp, geodesic_distance, log, multiply, normalize
@@ -22,6 +26,12 @@ if _is_debug_build():
     )
 
 __all__ = [
+    "EndSite",
+    "FileAccessError",
+    "FileFormatError",
+    "Motion",
+    "QuatfiltError",
+    "Skeleton",
     "add_gaussian_noise",
     "add_impulse_noise",
     "conjugate",
@@ -35,9 +45,11 @@ __all__ = [
     "multiply",
     "noise_level",
     "normalize",
+    "read_motion",
     "resample",
     "set_num_threads",
     "simd_level",
     "slerp",
     "use_backend",
+    "write_motion",
 ]
