@@ -1,14 +1,20 @@
+from typing import Any, TypeAlias
+
 import numpy as np
 from numpy.typing import NDArray
 
 from quatfilt._typing import Array, Mask
 
 __all__ = [
+    "FormatError",
     "conjugate",
     "continuous",
+    "continuous_euler",
     "exp",
     "fill_gaps",
     "forward_kinematics",
+    "forward_kinematics_moving",
+    "from_euler",
     "geodesic_distance",
     "get_num_threads",
     "is_debug_build",
@@ -18,10 +24,15 @@ __all__ = [
     "noise_level",
     "nonlocal_pose_means",
     "normalize",
+    "read_amc",
+    "read_asf",
+    "read_bvh",
     "scan",
     "set_num_threads",
     "simd_level",
     "slerp",
+    "to_euler",
+    "write_bvh",
 ]
 
 # filters/gaps
@@ -44,9 +55,25 @@ def nonlocal_pose_means(
     /,
 ) -> tuple[Array, Array | None]: ...
 
+# formats
+class FormatError(ValueError): ...
+
+_Offset: TypeAlias = tuple[float, float, float]
+_Joint: TypeAlias = tuple[str, int, _Offset, list[str], list[tuple[str | None, _Offset]]]
+
+def read_amc(data: bytes, skeleton: bytes, /) -> tuple[NDArray[np.float64], str, list[str]]: ...
+def read_asf(data: bytes, /) -> dict[str, Any]: ...
+def read_bvh(data: bytes, /) -> tuple[list[_Joint], tuple[float, str], NDArray[np.float64], list[str]]: ...
+def write_bvh(
+    joints: list[_Joint], frame_time: tuple[float, str], values: NDArray[np.float64], /
+) -> bytes: ...
+
 # motion/skeleton
 def forward_kinematics(
     rotations: Array, translation: Array, parents: NDArray[np.int64], offsets: Array, /
+) -> Array: ...
+def forward_kinematics_moving(
+    rotations: Array, joint_translations: Array, parents: NDArray[np.int64], /
 ) -> Array: ...
 
 # noise/noise
@@ -54,6 +81,13 @@ def noise_level(q: Array, /) -> Array: ...
 
 # rotations/continuity
 def continuous(q: Array, /) -> Array: ...
+
+# rotations/euler
+def continuous_euler(
+    angles: NDArray[np.float64], start: NDArray[np.float64], axes: str, /
+) -> NDArray[np.float64]: ...
+def from_euler(angles: NDArray[np.float64], axes: str, /) -> NDArray[np.float64]: ...
+def to_euler(q: NDArray[np.float64], axes: str, /) -> NDArray[np.float64]: ...
 
 # rotations/mean
 def mean(q: Array, weights: Array | None, /) -> Array: ...

@@ -11,8 +11,9 @@ or with four zeros.
 
 from quatfilt._reference.filters.gaps import fill_gaps
 from quatfilt._reference.filters.nonlocal_pose_means import nonlocal_pose_means
-from quatfilt._reference.motion.skeleton import forward_kinematics
+from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
 from quatfilt._reference.noise.noise import noise_level
+from quatfilt._reference.rotations.euler import continuous_euler, from_euler, to_euler
 from quatfilt._reference.rotations.mean import mean
 from quatfilt._reference.rotations.quaternion import (
     conjugate,
@@ -29,9 +30,12 @@ from quatfilt._reference.rotations.resample import slerp
 __all__ = [
     "conjugate",
     "continuous",
+    "continuous_euler",
     "exp",
     "fill_gaps",
     "forward_kinematics",
+    "forward_kinematics_moving",
+    "from_euler",
     "geodesic_distance",
     "log",
     "mean",
@@ -41,4 +45,5 @@ __all__ = [
     "normalize",
     "scan",
     "slerp",
+    "to_euler",
 ]

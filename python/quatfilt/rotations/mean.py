@@ -1,7 +1,5 @@
 """Karcher mean of rotations."""
 
-from typing import cast
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -64,7 +62,9 @@ def mean(
         given = _validation.floats(weights, "weights")
         shape = array.shape[:-1]
         if given.shape == (len(moved),):
-            given = np.broadcast_to(given.reshape([-1 if i == along else 1 for i in range(len(shape))]), shape)
+            given = np.broadcast_to(
+                given.reshape([-1 if i == along else 1 for i in range(len(shape))]), shape
+            )
         if given.shape != shape:
             raise ValueError(f"weights: expected shape {shape} or ({len(moved)},), got {given.shape}")
         if not (np.isfinite(given).all() and (given >= 0).all()):
@@ -72,7 +72,7 @@ def mean(
         share = np.moveaxis(given, along, 0).reshape(clip.shape[:2])
         share = np.require(share, clip.dtype, ("C_CONTIGUOUS", "ALIGNED"))
     result = ops().mean(clip, share).reshape(moved.shape[1:])
-    return cast("Array", _validation.scalar_order(result, scalar_first=scalar_first))
+    return _validation.scalar_order(result, scalar_first=scalar_first)
 
 
 __all__ = ["mean"]

@@ -84,7 +84,7 @@ pub(crate) fn output<'py, T: Element>(py: Python<'py>, shape: &[usize]) -> Bound
 }
 
 /// What a user reads where a kernel panicked.
-const BUG: &str = "quatfilt: a kernel failed; please report this as a bug";
+pub(crate) const BUG: &str = "quatfilt: a kernel failed; please report this as a bug";
 
 /// Runs `work` detached from the interpreter; errors and panics become Python exceptions.
 pub(crate) fn run<R: Send>(py: Python<'_>, work: impl FnOnce() -> Result<R, Error> + Send) -> PyResult<R> {
@@ -130,7 +130,7 @@ pub(crate) fn run_interruptible<R: Send>(
             });
             while let Err(RecvTimeoutError::Timeout) = finished.recv_timeout(POLL) {
                 if signal.is_ok() {
-                    signal = Python::attach(|py| py.check_signals());
+                    signal = Python::attach(|py: Python<'_>| py.check_signals());
                     if signal.is_err() {
                         interrupt.set();
                     }

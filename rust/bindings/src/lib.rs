@@ -4,6 +4,7 @@
 
 mod array;
 mod filters;
+mod formats;
 mod motion;
 mod noise;
 mod rotations;
@@ -16,11 +17,19 @@ mod _core {
     #[pymodule_export]
     use super::filters::nonlocal_pose_means::nonlocal_pose_means;
     #[pymodule_export]
-    use super::motion::skeleton::forward_kinematics;
+    use super::formats::FormatError;
+    #[pymodule_export]
+    use super::formats::acclaim::{read_amc, read_asf};
+    #[pymodule_export]
+    use super::formats::bvh::{read_bvh, write_bvh};
+    #[pymodule_export]
+    use super::motion::skeleton::{forward_kinematics, forward_kinematics_moving};
     #[pymodule_export]
     use super::noise::noise::noise_level;
     #[pymodule_export]
     use super::rotations::continuity::continuous;
+    #[pymodule_export]
+    use super::rotations::euler::{continuous_euler, from_euler, to_euler};
     #[pymodule_export]
     use super::rotations::mean::mean;
     #[pymodule_export]

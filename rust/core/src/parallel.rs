@@ -146,3 +146,12 @@ pub fn map<I: Send, R: Send>(
         None => items.into_iter().enumerate().map(|(i, item)| work(i, item)).collect(),
     }
 }
+
+/// Runs `work` inside the pool of this process, so that what it does with rayon is done by the pool's threads; directly
+/// where there is one thread only.
+pub fn install<R: Send>(work: impl FnOnce() -> R + Send) -> R {
+    match pool() {
+        Some(pool) => pool.install(work),
+        None => work(),
+    }
+}

@@ -34,3 +34,31 @@ pub(crate) fn forward_kinematics(
         Ok(out.into_any().unbind())
     })
 }
+
+/// Positions of joints that move in their parents, `(frames, joints, 4)`, `(frames, joints, 3)`, `(joints)` →
+/// `(frames, joints, 3)`.
+#[pyfunction]
+#[pyo3(signature = (rotations, joint_translations, parents, /))]
+pub(crate) fn forward_kinematics_moving(
+    py: Python<'_>,
+    rotations: &Bound<'_, PyAny>,
+    joint_translations: &Bound<'_, PyAny>,
+    parents: &Bound<'_, PyAny>,
+) -> PyResult<Py<PyAny>> {
+    let parents = input::<i64>("parents", parents)?;
+    let parents = elements("parents", &parents)?;
+    let parents: Vec<Option<usize>> = parents.iter().map(|&parent| usize::try_from(parent).ok()).collect();
+    by_dtype!(rotations, T => {
+        let rotations = input::<T>("rotations", rotations)?;
+        let moved = input::<T>("joint_translations", joint_translations)?;
+        let rotations = clip("rotations", &rotations)?;
+        let moved = elements("joint_translations", &moved)?;
+        let out = output::<T>(py, &[rotations.frames(), rotations.joints(), 3]);
+        {
+            let mut out = out.readwrite();
+            let out = out.as_slice_mut()?;
+            run(py, || skeleton::forward_kinematics_moving(rotations, moved, &parents, out))?;
+        }
+        Ok(out.into_any().unbind())
+    })
+}

@@ -95,9 +95,7 @@ pub fn forward_kinematics<T: Real>(
     check_length("parents", joints, tree.parents.len())?;
     check_length("offsets", joints * 3, tree.offsets.len())?;
     check_length("out", frames * joints * 3, out.len())?;
-    if tree.parents.iter().enumerate().any(|(joint, parent)| parent.is_some_and(|parent| parent >= joint)) {
-        return Err(Error::Parameter { name: "parents", expected: "parents that precede their children" });
-    }
+    check_parents(tree.parents)?;
     if out.is_empty() {
         return Ok(());
     }
@@ -112,4 +110,55 @@ pub fn forward_kinematics<T: Real>(
         }
         Ok(())
     })
+}
+
+/// Positions of the joints of a skeleton whose joints move in their parents, `(frames, joints, 3)`.
+///
+/// As [`forward_kinematics`], with an offset for each frame: `x_j = x_p + g_p t_j g_p⁻¹`, and `x = t` at a root, of which
+/// there may be several.
+///
+/// # Errors
+/// As [`forward_kinematics`].
+pub fn forward_kinematics_moving<T: Real>(
+    rotations: ClipView<'_, T>,
+    joint_translations: &[T],
+    parents: &[Option<usize>],
+    out: &mut [T],
+) -> Result<(), Error> {
+    let (frames, joints) = (rotations.frames(), rotations.joints());
+    check_length("parents", joints, parents.len())?;
+    check_length("joint_translations", frames * joints * 3, joint_translations.len())?;
+    check_length("out", frames * joints * 3, out.len())?;
+    check_parents(parents)?;
+    if out.is_empty() {
+        return Ok(());
+    }
+    let tasks: Vec<&mut [T]> = out.chunks_mut(TILES * TILE * joints * 3).collect();
+    parallel::for_each(tasks, frames * joints * 12, |task, out| {
+        let mut global = vec![[T::ZERO; 4]; joints];
+        for (i, out) in out.chunks_exact_mut(joints * 3).enumerate() {
+            let frame = task * TILES * TILE + i;
+            let moved = &joint_translations[frame * joints * 3..(frame + 1) * joints * 3];
+            for (joint, (&parent, moved)) in parents.iter().zip(moved.chunks_exact(3)).enumerate() {
+                let (mut turned, mut place) = (rotations.at(frame, joint), [moved[0], moved[1], moved[2]]);
+                if let Some(parent) = parent {
+                    place = rotate(global[parent], place);
+                    turned = product(global[parent], turned);
+                    for (x, &above) in place.iter_mut().zip(&out[parent * 3..parent * 3 + 3]) {
+                        *x += above;
+                    }
+                }
+                global[joint] = turned;
+                out[joint * 3..joint * 3 + 3].copy_from_slice(&place);
+            }
+        }
+        Ok(())
+    })
+}
+
+fn check_parents(parents: &[Option<usize>]) -> Result<(), Error> {
+    if parents.iter().enumerate().any(|(joint, parent)| parent.is_some_and(|parent| parent >= joint)) {
+        return Err(Error::Parameter { name: "parents", expected: "parents that precede their children" });
+    }
+    Ok(())
 }

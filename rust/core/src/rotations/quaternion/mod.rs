@@ -17,3 +17,5 @@ pub use one::{
 };
 pub use rows::{conjugate, exp, geodesic_distance, log, multiply, normalize};
 pub use scan::{Scan, scan};
+
+pub(super) use rows::{map_rows, rows};

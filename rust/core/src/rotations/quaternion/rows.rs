@@ -33,7 +33,11 @@ fn store<T: Real, const N: usize>(planes: &[[T; CHUNK]; N], rows: &mut [T]) {
 
 /// Applies `f` to rows of `A` components, giving rows of `B`.
 #[inline(always)]
-fn map_rows<T: Real, const A: usize, const B: usize>(a: &[T], out: &mut [T], f: impl Fn([T; A]) -> [T; B]) {
+pub(in crate::rotations) fn map_rows<T: Real, const A: usize, const B: usize>(
+    a: &[T],
+    out: &mut [T],
+    f: impl Fn([T; A]) -> [T; B],
+) {
     for (a, out) in a.chunks(CHUNK * A).zip(out.chunks_mut(CHUNK * B)) {
         let mut from = [[T::ONE; CHUNK]; A];
         let mut to = [[T::ZERO; CHUNK]; B];
@@ -94,7 +98,7 @@ multiversion! {
 }
 
 /// Cuts arrays of `n` rows into tasks and runs `work` on each.
-fn rows<T: Real>(
+pub(in crate::rotations) fn rows<T: Real>(
     n: usize,
     nanoseconds: usize,
     out: &mut [T],
