@@ -8,10 +8,17 @@ import warnings
 
 from quatfilt._backend import get_backend, get_num_threads, set_num_threads, simd_level, use_backend
 from quatfilt._core import is_debug_build as _is_debug_build
+from quatfilt.denoise import denoise
+from quatfilt.errors import FileAccessError, FileFormatError, QuatfiltError
 from quatfilt.filters.gaps import fill_gaps
+from quatfilt.filters.nonlocal_pose_means import nonlocal_pose_means
+from quatfilt.formats.files import read_motion, write_motion
 from quatfilt.motion import metrics
+from quatfilt.motion.motion import Motion
+from quatfilt.motion.skeleton import EndSite, Skeleton
 from quatfilt.noise.noise import add_gaussian_noise, add_impulse_noise, noise_level
 from quatfilt.rotations.continuity import continuous
+from quatfilt.rotations.mean import mean
 from quatfilt.rotations.quaternion import conjugate, exp, geodesic_distance, log, multiply, normalize
 from quatfilt.rotations.resample import resample, slerp
 
@@ -23,23 +30,34 @@ if _is_debug_build():
     )
 
 __all__ = [
+    "EndSite",
+    "FileAccessError",
+    "FileFormatError",
+    "Motion",
+    "QuatfiltError",
+    "Skeleton",
     "add_gaussian_noise",
     "add_impulse_noise",
     "conjugate",
     "continuous",
+    "denoise",
     "exp",
     "fill_gaps",
     "geodesic_distance",
     "get_backend",
     "get_num_threads",
     "log",
+    "mean",
     "metrics",
     "multiply",
     "noise_level",
+    "nonlocal_pose_means",
     "normalize",
+    "read_motion",
     "resample",
     "set_num_threads",
     "simd_level",
     "slerp",
     "use_backend",
+    "write_motion",
 ]

@@ -28,6 +28,11 @@ def ops() -> ModuleType:
     return _current
 
 
+def files() -> ModuleType:
+    """Return the functions that read and write files: the core's with every backend, for text is no arithmetic."""
+    return _core
+
+
 class use_backend:  # noqa: N801 - used as a function, and as a context manager
     """Choose who computes, for the whole process.
 
@@ -156,4 +161,13 @@ def simd_level() -> str:
     return _core.simd_level()
 
 
-__all__ = ["Backend", "get_backend", "get_num_threads", "ops", "set_num_threads", "simd_level", "use_backend"]
+__all__ = [
+    "Backend",
+    "files",
+    "get_backend",
+    "get_num_threads",
+    "ops",
+    "set_num_threads",
+    "simd_level",
+    "use_backend",
+]

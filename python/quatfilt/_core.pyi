@@ -1,4 +1,4 @@
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,8 +58,8 @@ def nonlocal_pose_means(
 # formats
 class FormatError(ValueError): ...
 
-_Offset = tuple[float, float, float]
-_Joint = tuple[str, int, _Offset, list[str], list[tuple[str | None, _Offset]]]
+_Offset: TypeAlias = tuple[float, float, float]
+_Joint: TypeAlias = tuple[str, int, _Offset, list[str], list[tuple[str | None, _Offset]]]
 
 def read_amc(data: bytes, skeleton: bytes, /) -> tuple[NDArray[np.float64], str, list[str]]: ...
 def read_asf(data: bytes, /) -> dict[str, Any]: ...
@@ -72,7 +72,6 @@ def write_bvh(
 def forward_kinematics(
     rotations: Array, translation: Array, parents: NDArray[np.int64], offsets: Array, /
 ) -> Array: ...
-
 def forward_kinematics_moving(
     rotations: Array, joint_translations: Array, parents: NDArray[np.int64], /
 ) -> Array: ...

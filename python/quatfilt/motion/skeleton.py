@@ -81,16 +81,13 @@ class Skeleton:
         self._parents = _validation.parents(parents, len(self._names))
         self._offsets = _validation.offsets(offsets, len(self._names))
         self._centimetres_per_unit = _validation.number(centimetres_per_unit, "centimetres_per_unit", above=0)
-        sites = (EndSite(*site) for site in end_sites)
-        self._end_sites = tuple(
-            EndSite(
-                _validation.integer(joint, "end_sites", at_least=0, at_most=len(self._names) - 1),
-                tuple(map(float, offset)),
-                name,
-            )
-            for joint, offset, name in sites
-        )
+        self._end_sites = tuple(self._end_site(*site) for site in end_sites)
         self._acclaim: bytes | None = None
+
+    def _end_site(self, joint: int, offset: tuple[float, float, float], name: str | None = None) -> EndSite:
+        joint = _validation.integer(joint, "end_sites", at_least=0, at_most=len(self._names) - 1)
+        x, y, z = (_validation.number(value, "end_sites") for value in offset)
+        return EndSite(joint, (x, y, z), name)
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -26,7 +26,7 @@ def parity(axes: str) -> int:
 
 
 def from_euler(angles: Reals, axes: str) -> Reals:
-    """Unit quaternions of Euler angles in radians, `(n, 3)` → `(n, 4)`; NaN where an angle is NaN."""
+    """Turn Euler angles in radians into unit quaternions, `(n, 3)` → `(n, 4)`; NaN where an angle is NaN."""
     turns = []
     for angle, axis in zip(np.moveaxis(angles, -1, 0), axes, strict=True):
         turn = np.zeros((len(angles), 4))
@@ -76,7 +76,8 @@ def to_euler(q: Reals, axes: str) -> Reals:
 
 def wrapped(angle: Reals) -> Reals:
     """Angles in `[−2π, 2π]`, moved by whole turns into `[−π, π]`."""
-    return angle - 2 * np.pi * (angle > np.pi) + 2 * np.pi * (angle < -np.pi)
+    near_zero: Reals = angle - 2 * np.pi * (angle > np.pi) + 2 * np.pi * (angle < -np.pi)
+    return near_zero
 
 
 def continuous_euler(angles: Reals, start: Reals, axes: str) -> Reals:
@@ -110,6 +111,6 @@ def nearest(angles: Reals, before: Reals, axes: str) -> Reals:
 
 
 def near(angles: Reals, target: Reals) -> Reals:
-    """The angles that differ from `angles` by whole turns and lie nearest to `target`."""
+    """Add whole turns to `angles` to bring them nearest to `target`."""
     turns: Reals = np.round((target - angles) / (2 * np.pi))
     return angles + 2 * np.pi * turns

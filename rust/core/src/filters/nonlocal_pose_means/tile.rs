@@ -148,8 +148,8 @@ impl<'a, T: Real> Tile<'a, T> {
     ) -> Result<bool, Error> {
         let joints = self.rows.len();
         let mut means = Means::new(self);
-        let groups = match self.clip.filter.weights {
-            Weights::Pose => vec![0..joints],
+        let groups: Vec<Range<usize>> = match self.clip.filter.weights {
+            Weights::Pose => std::iter::once(0..joints).collect(),
             Weights::Joint => (0..joints).map(|joint| joint..joint + 1).collect(),
         };
         for group in groups {

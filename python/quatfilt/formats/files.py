@@ -1,0 +1,211 @@
+"""Reading and writing motions, whatever the format."""
+
+import contextlib
+import os
+import secrets
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+from typing import Literal, TypeAlias
+
+from quatfilt import _validation
+from quatfilt.errors import FileAccessError, FileFormatError
+from quatfilt.formats import acclaim, bvh, npz
+from quatfilt.motion.motion import Motion
+from quatfilt.motion.skeleton import Skeleton
+
+FirstFrame: TypeAlias = Literal["auto", "keep", "drop"]
+PathLike: TypeAlias = str | os.PathLike[str]
+
+
+def read_motion(
+    path: PathLike,
+    *,
+    fps: float | None = None,
+    skeleton: PathLike | Skeleton | None = None,
+    first_frame: FirstFrame = "auto",
+) -> Motion:
+    r"""Read a motion from a file.
+
+    Parameters
+    ----------
+    path : str or path
+        ``.bvh``; ``.amc`` with a skeleton; ``.npz`` of AMASS or SMPL (``poses``, ``trans``), or as `write_motion` makes them.
+    fps : float, hertz, optional
+        Frames per second, instead of what the file says. AMC files say nothing: 120 unless told. An ``.npz`` without a frame
+        rate is refused unless told.
+    skeleton : str, path or Skeleton, optional
+        For ``.amc``: an ``.asf`` (or ``.asx``) file, or the skeleton of a motion read with one. By default the file beside
+        the motion that has its name up to the first ``_``, or the only one there.
+    first_frame : {"auto", "keep", "drop"}
+        CMU's recordings as BVH begin with a row that is no recording but a rest pose. ``"auto"`` leaves out such a row of a BVH
+        file (the root not turned at all, most joints hardly, and a jump to the next row), says so in ``notes``, and
+        `write_motion` puts it back. ``"keep"`` takes the first row for what the others are, ``"drop"`` drops it for good.
+
+    Returns
+    -------
+    Motion
+        float64. Its ``notes`` say what was repaired or assumed.
+
+    Raises
+    ------
+    FileFormatError
+        If the file does not hold what its name promises: path, line and reason.
+    FileAccessError
+        If it cannot be read.
+    ValueError, TypeError
+        For other options than those above.
+
+    See Also
+    --------
+    write_motion
+
+    Notes
+    -----
+    A 100 MB BVH file takes about half a second.
+
+    Examples
+    --------
+    >>> import quatfilt as qf, tempfile, pathlib
+    >>> text = "ROOT hips { OFFSET 0 0 0 CHANNELS 1 Xrotation }\nMOTION\nFrames: 2\nFrame Time: .025\n12.5\n13\n"
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder) / "two.bvh"
+    ...     _ = path.write_text(text)
+    ...     motion = qf.read_motion(path)
+    >>> motion
+    Motion(2 frames of 1 joint, 40 fps, 0.05 s, float64)
+    >>> motion.notes
+    ('line 1: HIERARCHY missing: the file starts with a root',)
+    """
+    rate = None if fps is None else _validation.number(fps, "fps", above=0)
+    first = _validation.choice(first_frame, "first_frame", ("auto", "keep", "drop"))
+    name = os.fspath(path)
+    extension = _extension(name)
+    if extension in (".asf", ".asx"):
+        raise FileFormatError(name, None, "a skeleton holds no motion: read the .amc, with this as skeleton=")
+    if extension not in (".bvh", ".amc", ".npz"):
+        raise FileFormatError(name, None, f"expected .bvh, .amc or .npz, got {extension or 'no extension'}")
+    if extension != ".amc" and skeleton is not None:
+        raise TypeError(f"skeleton: expected None for {extension}, which has its own")
+    data = read_bytes(name)
+    if not data:
+        raise FileFormatError(name, None, "the file is empty")
+    if extension == ".bvh":
+        return bvh.read(name, data, fps=rate, first_frame=first)
+    if extension == ".npz":
+        return npz.read(name, data, fps=rate, first_frame=first)
+    if not isinstance(skeleton, Skeleton):
+        asf = acclaim.find_skeleton(name) if skeleton is None else os.fspath(skeleton)
+        skeleton = acclaim.read_skeleton(asf, read_bytes(asf))
+    return acclaim.read(name, data, skeleton, fps=rate, first_frame=first)
+
+
+def write_motion(path: PathLike, motion: Motion) -> None:
+    """Write a motion to a file.
+
+    The file is written under a temporary name and renamed, so that an interrupted run leaves an older file as it was.
+
+    Parameters
+    ----------
+    path : str or path
+        ``.bvh`` or ``.npz``. What came from a BVH file keeps its names, hierarchy, offsets, channels, end sites and frame time;
+        what came from AMASS keeps its layout and all else that the file held.
+    motion : Motion
+        What is written. Samples that are the same as in the file that the motion came from get the same numbers; the curves of
+        others are continuous.
+
+    Raises
+    ------
+    FileFormatError
+        If the extension is another, or the format cannot hold the motion.
+    FileAccessError
+        If the file cannot be written.
+    TypeError
+        If `motion` is no motion.
+
+    See Also
+    --------
+    read_motion
+
+    Examples
+    --------
+    >>> import quatfilt as qf, tempfile, pathlib
+    >>> arm = qf.Skeleton(["shoulder", "elbow"], [-1, 0], [[0.0, 0, 0], [0, -30, 0]])
+    >>> motion = qf.Motion([[[0.6, 0.8, 0, 0]] * 2] * 60, fps=30, skeleton=arm)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder) / "arm.bvh"
+    ...     qf.write_motion(path, motion)
+    ...     print(len(qf.read_motion(path)))
+    60
+    """
+    if not isinstance(motion, Motion):
+        raise TypeError(f"motion: expected a Motion, got {type(motion).__name__}")
+    name = os.fspath(path)
+    extension = _extension(name)
+    if extension == ".bvh":
+        write_bytes(name, lambda: bvh.write(name, motion))
+    elif extension == ".npz":
+        write_bytes(name, lambda: npz.write(motion))
+    elif extension == ".amc":
+        raise FileFormatError(name, None, "AMC is read only: write .bvh or .npz")
+    else:
+        raise FileFormatError(name, None, f"expected .bvh or .npz, got {extension or 'no extension'}")
+
+
+def _extension(name: str) -> str:
+    return Path(name).suffix.lower()
+
+
+def read_bytes(path: str) -> bytes:
+    """Return what a file holds."""
+    try:
+        with Path(path).open("rb") as file:
+            return file.read()
+    except (OSError, ValueError) as error:
+        raise FileAccessError(path, _reason(error)) from None
+
+
+def write_bytes(path: str, content: Callable[[], bytes]) -> None:
+    """Write what `content` returns under a temporary name beside `path`, and rename it."""
+    try:
+        target = Path(path).resolve()
+        _check_writable(target)
+        data = content()
+        if target.exists() and not target.is_file():  # a pipe, a terminal
+            target.write_bytes(data)
+        else:
+            _replace(target, data)
+    except (OSError, ValueError) as error:
+        if isinstance(error, FileFormatError):
+            raise
+        raise FileAccessError(path, _reason(error)) from None
+
+
+def _check_writable(target: Path) -> None:
+    if target.is_dir():
+        raise IsADirectoryError(None, "Is a directory")
+    if target.exists() and not os.access(target, os.W_OK):
+        raise PermissionError(None, "Permission denied")
+    if not target.parent.is_dir():
+        raise FileNotFoundError(None, "No such directory")
+
+
+def _replace(target: Path, data: bytes) -> None:
+    temporary = target.with_name(f".{target.name[:40]}.{secrets.token_hex(6)}.tmp")
+    try:
+        with temporary.open("xb") as file:
+            file.write(data)
+        if target.exists():
+            shutil.copymode(target, temporary)
+        temporary.replace(target)
+    except BaseException:
+        with contextlib.suppress(OSError):
+            temporary.unlink()
+        raise
+
+
+def _reason(error: Exception) -> str:
+    return getattr(error, "strerror", None) or str(error)
+
+
+__all__ = ["FirstFrame", "PathLike", "read_motion", "write_motion"]
