@@ -1,0 +1,3 @@
+import typer
+
+evaluate = typer.Typer(name="evaluate", help="Measure the methods as the papers do.")
