@@ -66,10 +66,15 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, title:
 def number(value: float | None, digits: int = 2) -> str:
     """Return a number for a table; a dash where there is none."""
     if value is None or math.isnan(value):
-        return "–"
+        return "-"
     if math.isinf(value):
         return "∞" if value > 0 else "−∞"
     return f"{round(value, digits) + 0.0:.{digits}f}"  # no −0.00
+
+
+def counted(count: int, what: str) -> str:
+    """Return a count with its noun."""
+    return f"{count} {what}{'' if count == 1 else 's'}"
 
 
 @contextlib.contextmanager

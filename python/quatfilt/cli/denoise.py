@@ -15,6 +15,7 @@ from quatfilt.denoise import denoise as clean
 from quatfilt.errors import FileAccessError
 from quatfilt.formats.files import write_motion
 from quatfilt.motion.defects import find_defects
+from quatfilt.motion.metrics import angle_error
 from quatfilt.motion.motion import Motion
 from quatfilt.noise.noise import noise_level
 
@@ -119,11 +120,12 @@ def denoise(
         _output.say(f"{path}: {note}")
     if report["missing_samples"]:
         _output.say(
-            f"{path}: {report['missing_samples']} missing samples, {report['missing_samples_left']} left missing"
+            f"{path}: {_output.counted(report['missing_samples'], 'missing sample')}, "
+            f"{report['missing_samples_left']} left missing"
         )
     _output.say(
-        f"{path}: {len(motion)} frames of {len(motion.skeleton)} joints, estimated noise "
-        f"{report['noise_before_degrees']:.2g}° before, {report['noise_after_degrees']:.2g}° after, "
+        f"{path}: {_output.counted(len(motion), 'frame')} of {_output.counted(len(motion.skeleton), 'joint')}, "
+        f"estimated noise {report['noise_degrees']:.2g}°, turned by {report['change_degrees']:.2g}° on average, "
         f"{seconds:.2g} s"
     )
     _output.say(f"{target}: written")
@@ -154,11 +156,10 @@ def _bandwidth(text: str) -> float | str:
 
 
 def _report(path: Path, target: Path, motion: Motion, result: Motion, seconds: float) -> dict[str, Any]:
-    def overall(clip: Motion) -> float:
-        if not clip.rotations.size:
-            return 0.0
-        return math.degrees(float(np.sqrt(np.mean(np.square(noise_level(clip.rotations))))))
-
+    noise, change = 0.0, 0.0
+    if motion.rotations.size:
+        noise = float(np.degrees(np.sqrt(np.mean(np.square(noise_level(motion.rotations))))))
+        change = float(angle_error(motion.rotations, result.rotations))
     return {
         "input": str(path),
         "output": str(target),
@@ -168,8 +169,8 @@ def _report(path: Path, target: Path, motion: Motion, result: Motion, seconds: f
         "notes": list(motion.notes),
         "missing_samples": _missing(motion),
         "missing_samples_left": _missing(result),
-        "noise_before_degrees": overall(motion),
-        "noise_after_degrees": overall(result),
+        "noise_degrees": noise,
+        "change_degrees": change,
         "seconds": seconds,
     }
 

@@ -33,19 +33,22 @@ def info(
         return
     joints = report["joints"]
     _output.say(
-        f"{path}: {report['frames']} frames, {report['fps']:g} frames per second, {report['seconds']:.3g} s, "
-        f"{len(joints)} joints"
+        f"{path}: {_output.counted(report['frames'], 'frame')} of {_output.counted(len(joints), 'joint')}, "
+        f"{report['fps']:g} frames per second, {report['seconds']:.3g} s"
     )
     for note in motion.notes:
         _output.say(f"  {note}")
     if report["unit_centimetres"] != 1:
         _output.say(f"  one unit is {report['unit_centimetres']:.4g} cm")
-    frozen = report["frozen_frames"]
-    _output.say(
-        f"  estimated noise {report['noise_degrees']:.2g}° (root mean square over the joints), "
-        f"{report['missing_samples']} missing samples, {report['spikes']} spikes, {report['jumps']} jumps, "
-        f"{frozen} frozen frame{'s' * (frozen != 1)}"
+    counts = (
+        _output.counted(report["missing_samples"], "missing sample"),
+        _output.counted(report["missing_positions"], "missing root position"),
+        _output.counted(report["spikes"], "spike"),
+        _output.counted(report["jumps"], "jump"),
+        _output.counted(report["frozen_frames"], "frozen frame"),
     )
+    _output.say(f"  estimated noise {report['noise_degrees']:.2g}° (root mean square over the joints)")
+    _output.say(f"  {', '.join(counts)}")
     worst = sorted(
         joints,
         key=lambda joint: (
@@ -87,6 +90,7 @@ def describe(motion: Motion) -> dict[str, Any]:
         "notes": list(motion.notes),
         "noise_degrees": float(np.sqrt(np.mean(noise**2))) if len(noise) else 0.0,
         "missing_samples": int(defects.missing.sum()),
+        "missing_positions": int(np.count_nonzero(np.isnan(motion.translation).any(axis=1))),
         "spikes": int(spikes.sum()),
         "jumps": int(jumps.sum()),
         "frozen_frames": defects.frozen,

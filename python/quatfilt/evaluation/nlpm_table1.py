@@ -159,7 +159,7 @@ def run(
     seeds: int,
     noises: Sequence[Noise] = NOISES,
     workers: int | None = None,
-    progress: Callable[[int, int], None] = lambda done, total: None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> list[Result]:
     """Add noise, filter and measure.
 
@@ -173,7 +173,7 @@ def run(
         The columns.
     workers : int or None, default None
         Processes; None for one on each processor. 1 computes here.
-    progress : callable
+    progress : callable or None, default None
         Is told how many of how many pieces are done.
 
     Returns
@@ -185,7 +185,8 @@ def run(
     results: dict[int, list[Result]] = {}
     for number, result in _computed(pieces, workers or os.cpu_count() or 1):
         results[number] = result
-        progress(len(results), len(pieces))
+        if progress is not None:
+            progress(len(results), len(pieces))
     return [result for number in sorted(results) for result in results[number]]
 
 

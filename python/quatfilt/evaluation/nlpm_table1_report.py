@@ -145,18 +145,22 @@ def _conditions(report: Report) -> list[str]:
         "",
         f"Written by `{report.command}`, version {report.version}.",
         "",
-        f"Noise is added to clean clips, {report.seeds} times with different seeds, and filtered. `mσ` is Gaussian noise "
-        f"of m · {SIGMA} rad per component of the rotation vector (m · {math.degrees(SIGMA):.2f}°); impulses hit 1 % of the "
-        "samples and turn them by 10° to 60° about a random axis. Noise and measures concern the steady joints: those that, in "
-        "the clean clip, never turn by more than 15° in a frame at 120 frames per second. The other joints are defects of the "
-        "recording: spikes to remove, not noise.",
+        (
+            f"Noise is added to clean clips, {report.seeds} times with different seeds, and filtered. `mσ` is Gaussian noise "
+            f"of m · {SIGMA} rad per component of the rotation vector (m · {math.degrees(SIGMA):.2f}°); impulses hit 1 % of the "
+            "samples and turn them by 10° to 60° about a random axis. Noise and measures concern the steady joints: those that, in "
+            "the clean clip, never turn by more than 15° in a frame at 120 frames per second. The other joints are defects of the "
+            "recording: spikes to remove, not noise."
+        ),
         "",
     ]
     wrapped = [f"{noise.name} {noise.wrapped:.2%}" for noise in report.noises if noise.wrapped >= 5e-5]
     if wrapped:
         lines += [
-            f"Noise beyond half a turn wraps round and comes out as a smaller turn the other way: {', '.join(wrapped)} of the "
-            "samples.",
+            (
+                f"Noise beyond half a turn wraps round and comes out as a smaller turn the other way: {', '.join(wrapped)} of the "
+                "samples."
+            ),
             "",
         ]
     lines += ["| clip | motion | frames | steady joints | left out |", "|---|---|--:|--:|---|"]
@@ -168,10 +172,12 @@ def _conditions(report: Report) -> list[str]:
     return [
         *lines,
         "",
-        "Rows: `paper` is the paper's setting (window 21, patch 11, bandwidth 0.016 rad), with the mean over the patch or the "
-        "printed sum; `auto` is the default, whose bandwidth is the estimated noise; `per joint` gives each joint weights of its "
-        f"own; `oracle` takes for each clip and noise the best of {len(GRID)} bandwidths ({GRID[0]:.3f} to {GRID[-1]:.3f} rad), "
-        "which nobody could know without the truth. No other row was tuned on these clips.",
+        (
+            "Rows: `paper` is the paper's setting (window 21, patch 11, bandwidth 0.016 rad), with the mean over the patch or the "
+            "printed sum; `auto` is the default, whose bandwidth is the estimated noise; `per joint` gives each joint weights of its "
+            f"own; `oracle` takes for each clip and noise the best of {len(GRID)} bandwidths ({GRID[0]:.3f} to {GRID[-1]:.3f} rad), "
+            "which nobody could know without the truth. No other row was tuned on these clips."
+        ),
         "",
     ]
 
@@ -219,9 +225,11 @@ def _beside_the_paper(report: Report) -> list[str]:
         for method in ("paper, mean", "auto", "oracle")
     )
     return [
-        f"- The paper prints, for its method on one running clip: {printed} dB. It does not say which peak and mean its PSNR has, so "
-        f"that the levels cannot be compared. From {first} to {last} its values fall by "
-        f"{PRINTED[first] - PRINTED[last]:.1f} dB; here {falls}.",
+        (
+            f"- The paper prints, for its method on one running clip: {printed} dB. It does not say which peak and mean its PSNR has, so "
+            f"that the levels cannot be compared. From {first} to {last} its values fall by "
+            f"{PRINTED[first] - PRINTED[last]:.1f} dB; here {falls}."
+        ),
     ]
 
 
@@ -247,9 +255,11 @@ def _all_measures(report: Report) -> list[str]:
     lines = [
         "## All measures",
         "",
-        "Means over clips and seeds. Angles of the error in degrees, mean and 95th percentile; joint positions in cm (all joints); "
-        "rotational jerk as a multiple of the truth's; path of each foot joint while the truth's touches the ground, over the whole "
-        "clip; 95th percentile of the angular speed as a share of the truth's; delay in frames.",
+        (
+            "Means over clips and seeds. Angles of the error in degrees, mean and 95th percentile; joint positions in cm (all joints); "
+            "rotational jerk as a multiple of the truth's; path of each foot joint while the truth's touches the ground, over the whole "
+            "clip; 95th percentile of the angular speed as a share of the truth's; delay in frames."
+        ),
         "",
     ]
     for noise in report.noises:
@@ -330,7 +340,7 @@ def _finite(value: float) -> float | None:
 
 
 def _cell(value: float, digits: int) -> str:
-    return f"{round(value, digits) + 0.0:.{digits}f}" if math.isfinite(value) else "–"  # no −0.00
+    return f"{round(value, digits) + 0.0:.{digits}f}" if math.isfinite(value) else "-"  # no −0.00
 
 
 __all__ = ["ROWS", "Report", "as_dict", "draw", "markdown", "write"]

@@ -73,7 +73,7 @@ def find_defects(q: ArrayLike, *, fps: float = 120.0) -> Defects:
         spikes[1:-1] = (shorter > largest) & (around < shorter / 2)
     returns = np.zeros_like(far)
     returns[1:] = spikes[:-1]
-    still = (steps == 0).all(axis=1) if steps.size else np.zeros(0, np.bool_)
+    still = (clip[1:] == clip[:-1]).all(axis=(1, 2)) if clip.shape[1] else np.zeros(0, np.bool_)
     return Defects(
         missing=np.sum(missing, axis=0),
         fastest=np.max(np.nan_to_num(steps), axis=0, initial=0.0),
