@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 
 import numpy as np
 import pytest
@@ -316,17 +315,51 @@ def test_an_output_that_cannot_say_degrees_does_not_fail(folder):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="not on this platform: signals")
-def test_an_interrupted_run_says_so_and_leaves_the_old_output(folder, tmp_path):
-    output = tmp_path / "out.bvh"
+def test_an_interrupted_process_says_so(tmp_path):
+    # The command is at work once it has opened the pipe, and then waits for what never comes.
+    pipe, output = tmp_path / "pipe.bvh", tmp_path / "out.bvh"
     output.write_text("old")
-    qf.write_motion(tmp_path / "long.npz", walk(seconds=120))
-    command = [*COMMAND, "denoise", str(tmp_path / "long.npz"), "-o", str(output), "--search-radius", "all"]
+    os.mkfifo(pipe)
+    command = [*COMMAND, "denoise", str(pipe), "-o", str(output)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        time.sleep(2)
-        assert process.poll() is None, "it was to be interrupted at work"
+        writer = os.open(pipe, os.O_WRONLY)
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=100)
+        os.close(writer)
     assert process.returncode == 130
     assert said == "quatfilt: interrupted\n"
     assert output.read_text() == "old"
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["long.npz", "out.bvh"]
+
+
+def test_an_interruption_while_writing_leaves_the_old_file(folder, tmp_path, capsys, monkeypatch):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    output = tmp_path / "out.bvh"
+    output.write_text("old")
+    monkeypatch.setattr("quatfilt.formats.bvh.write", interrupted)
+    assert main(["denoise", str(folder / "noisy.bvh"), "-o", str(output)]) == 130
+    assert capsys.readouterr().err == "quatfilt: interrupted\n"
+    assert output.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [output]
+
+
+def test_errors_of_the_package_itself_are_not_the_users(folder, capsys, monkeypatch):
+    def wrong(*_, **__):
+        raise KeyError("surprise")
+
+    monkeypatch.setattr(sys.modules["quatfilt.cli.info"], "describe", wrong)
+    assert main(["info", str(folder / "noisy.bvh")]) == 1
+    assert (
+        capsys.readouterr().err
+        == "quatfilt: internal error: KeyError('surprise'); --debug shows where it comes from\n"
+    )
+
+
+def test_too_little_memory_is_said_in_one_line(folder, capsys, monkeypatch):
+    def too_much(*_, **__):
+        raise MemoryError
+
+    monkeypatch.setattr(sys.modules["quatfilt.cli.info"], "describe", too_much)
+    assert main(["info", str(folder / "noisy.bvh")]) == 2
+    assert capsys.readouterr().err == "quatfilt: not enough memory\n"

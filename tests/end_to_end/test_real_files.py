@@ -39,10 +39,10 @@ def test_info_denoise_and_compare(data_dir, tmp_path, name):
     assert len(cleaned) == len(original)
     assert np.isfinite(cleaned.rotations).all()
     compared = run("compare", source, output, "--json")
-    # Recordings are nearly clean: what is taken away is small, and the motion stays.
-    assert compared["angle_mean"] < 1.5
+    # What is taken away is of the size of the noise that was found, and nothing becomes faster.
+    assert compared["angle_mean"] < 5 * described["noise_degrees"]
     assert compared["position"] < 2
-    assert compared["peak_kept"] == pytest.approx(1, abs=0.15)
+    assert 0.75 < compared["peak_kept"] < 1.02
 
 
 def test_noise_on_a_recording_is_taken_away(data_dir, tmp_path):

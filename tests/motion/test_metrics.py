@@ -46,8 +46,8 @@ def test_psnr_takes_the_mean_before_the_logarithm():
     assert metrics.psnr(truth, estimate) == pytest.approx(expected, abs=1e-10)
 
 
-def test_a_perfect_estimate():
-    truth = still(9, 2)
+@pytest.mark.parametrize("truth", [still(9, 2), clips.walk(np.random.default_rng(1), 20, 3)])
+def test_a_perfect_estimate(truth):
     assert metrics.psnr(truth, truth) == math.inf
     assert metrics.mse(truth, truth) == 0
     assert metrics.angle_error(truth, -truth) == 0

@@ -9,9 +9,7 @@ import typer
 from quatfilt import _validation
 from quatfilt.cli import _output
 from quatfilt.cli.compare import print_measures
-from quatfilt.evaluation.demonstration import SIGMA, SIGMA_TRANSLATION, demonstrate
 from quatfilt.evaluation.measures import measure
-from quatfilt.evaluation.picture import draw
 from quatfilt.formats.files import write_motion
 
 
@@ -25,13 +23,17 @@ def demo(
     sigma: Annotated[
         float,
         typer.Option(metavar="DEGREES", help="Deviation of the noise, per component of the rotation vector."),
-    ] = round(math.degrees(SIGMA), 3),
+    ] = 0.917,
     json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")] = False,
 ) -> None:
     """Add noise to a synthetic walk, clean it, and show what that does.
 
     Writes truth.bvh, noisy.bvh, denoised.bvh and, with matplotlib, denoise.png.
     """
+    # SciPy would slow down every verb.
+    from quatfilt.evaluation.demonstration import SIGMA_TRANSLATION, demonstrate  # noqa: PLC0415
+    from quatfilt.evaluation.picture import draw  # noqa: PLC0415
+
     _validation.number(sigma, "--sigma", at_least=0)
     _validation.number(seconds, "--seconds", above=0, at_most=3600)
     _validation.integer(seed, "--seed", at_least=0)

@@ -12,7 +12,6 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 
 from quatfilt import _validation
 from quatfilt.cli import _output
-from quatfilt.evaluation import nlpm_table1, nlpm_table1_report
 
 evaluate = typer.Typer(
     name="evaluate",
@@ -53,6 +52,8 @@ def run_nlpm_table1(
 
     Writes nlpm-table1.md, nlpm-table1.json and, with matplotlib, nlpm-table1.png.
     """
+    from quatfilt.evaluation import nlpm_table1, nlpm_table1_report  # noqa: PLC0415 - SciPy would slow down every verb
+
     _validation.integer(seeds, "--seeds", at_least=1)
     if workers is not None:
         _validation.integer(workers, "--workers", at_least=1)

@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.stats import chi
 
 from quatfilt._backend import set_num_threads
 from quatfilt._typing import Array, Mask
@@ -83,7 +82,11 @@ class Noise:
     @property
     def wrapped(self) -> float:
         """Share of the samples that the noise turns by more than half a turn: they come out as smaller turns."""
-        return 0.0 if self.multiple is None else float(chi.sf(math.pi / (self.multiple * SIGMA), df=3))
+        if self.multiple is None:
+            return 0.0
+        # The length of three normal components has the chi distribution with three degrees of freedom.
+        x = math.pi / (self.multiple * SIGMA)
+        return math.erfc(x / math.sqrt(2)) + math.sqrt(2 / math.pi) * x * math.exp(-x * x / 2)
 
     def add(self, q: Array, rng: np.random.Generator) -> Array:
         """Return noisy rotations."""

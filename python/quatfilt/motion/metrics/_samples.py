@@ -50,6 +50,8 @@ def turns(a: Values, b: Values) -> Values:
     between = ops().multiply(ops().conjugate(left), right)
     between *= np.where(between[:, :1] < 0, -1.0, 1.0)
     vectors: Values = 2 * ops().log(between).reshape(*a.shape[:-1], 3)
+    # The product of a quaternion with its own conjugate rounds to a turn of 1e-17, which is no error.
+    vectors[(a == b).all(axis=-1) | (a == -b).all(axis=-1)] = 0.0
     vectors[missing] = np.nan
     return vectors
 
