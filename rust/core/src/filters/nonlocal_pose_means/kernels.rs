@@ -13,17 +13,29 @@ pub(super) const LANE: usize = 64;
 pub(super) const SHIFT: f64 = 60.0;
 
 multiversion! {
-    /// Half rotation vectors of `sign·m⁻¹q` for up to [`LANE`] samples of one joint, `step` samples apart.
+    /// Copies samples, turning the signs of those that are marked.
+    pub(super) fn copy_signed<T: Real>(samples: &[[T; 4]], flips: &[u8], out: &mut [[T; 4]]) {
+        let n = samples.len();
+        let (flips, out) = (&flips[..n], &mut out[..n]);
+        for i in 0..n {
+            let sign = if flips[i] == 0 { T::ONE } else { -T::ONE };
+            let [w, x, y, z] = samples[i];
+            out[i] = [w * sign, x * sign, y * sign, z * sign];
+        }
+    }
+}
+
+multiversion! {
+    /// Half rotation vectors of `m⁻¹q` for up to [`LANE`] samples of one joint, `step` samples apart.
     pub(super) fn load_fixed<T: Real>(
-        samples: &[[T; 4]], step: usize, signs: &[T; LANE], inverse: [T; 4],
+        samples: &[[T; 4]], step: usize, inverse: [T; 4],
         x: &mut [T], y: &mut [T], z: &mut [T],
     ) {
         let q = gather(samples, step);
         let n = x.len().min(LANE);
         let mut v = [[T::ZERO; LANE]; 3];
         for i in 0..LANE {
-            let s = signs[i];
-            let one = log_one(product(inverse, [q[0][i] * s, q[1][i] * s, q[2][i] * s, q[3][i] * s]));
+            let one = log_one(product(inverse, [q[0][i], q[1][i], q[2][i], q[3][i]]));
             v[0][i] = one[0];
             v[1][i] = one[1];
             v[2][i] = one[2];
@@ -35,9 +47,9 @@ multiversion! {
 }
 
 multiversion! {
-    /// Unit quaternions `sign·q` of up to [`LANE`] samples of one joint, `step` samples apart.
+    /// Unit quaternions of up to [`LANE`] samples of one joint, `step` samples apart.
     pub(super) fn load_local<T: Real>(
-        samples: &[[T; 4]], step: usize, signs: &[T; LANE],
+        samples: &[[T; 4]], step: usize,
         w: &mut [T], x: &mut [T], y: &mut [T], z: &mut [T],
     ) {
         let q = gather(samples, step);
@@ -45,7 +57,7 @@ multiversion! {
         let mut scale = [T::ZERO; LANE];
         for i in 0..LANE {
             let square = (q[0][i] * q[0][i] + q[1][i] * q[1][i]) + (q[2][i] * q[2][i] + q[3][i] * q[3][i]);
-            scale[i] = signs[i] / square.sqrt();
+            scale[i] = T::ONE / square.sqrt();
         }
         for (plane, q) in [w, x, y, z].into_iter().zip(&q) {
             for i in 0..n {
@@ -244,13 +256,13 @@ multiversion! {
 }
 
 multiversion! {
-    /// Adds, for each lag of a block, the weighted later and earlier samples of `N` planes.
+    /// Adds, for each lag of a block, the weighted later and earlier samples of `N` planes; `fresh` sums begin with them.
     ///
     /// `forward` and `backward` hold a row of weights per lag, the first for the lag `lag`; frame `i` of the tile stands at
     /// `at + i` in the planes. Samples outside of the planes must have weight 0.
     pub(super) fn accumulate<T: Real, const N: usize>(
         sums: [&mut [T]; N], planes: [&[T]; N], at: usize, lag: usize, lags: usize,
-        forward: &Planes<T>, backward: &Planes<T>,
+        forward: &Planes<T>, backward: &Planes<T>, fresh: bool,
     ) {
         let mut sums = sums;
         let length = planes[0].len();
@@ -283,8 +295,12 @@ multiversion! {
             }
             for (sums, lane) in sums.iter_mut().zip(&lane) {
                 let sums = &mut sums[start..start + LANE];
-                for i in 0..LANE {
-                    sums[i] += lane[i];
+                if fresh {
+                    sums.copy_from_slice(lane);
+                } else {
+                    for i in 0..LANE {
+                        sums[i] += lane[i];
+                    }
                 }
             }
         }
