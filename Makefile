@@ -116,7 +116,8 @@ docs: build $(VENV)/.group-docs
 .PHONY: dist  ## Build the source distribution and a wheel into dist
 dist: $(VENV)/.group-build
 	rm -rf dist
-	$(BIN)/maturin build --release --locked --sdist --out dist
+	$(BIN)/maturin sdist --out dist
+	$(BIN)/maturin build --release --locked --out dist
 
 .PHONY: smoke  ## Install the source distribution into a clean environment and try it
 smoke: $(VENV)/.group-build

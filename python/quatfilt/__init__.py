@@ -10,11 +10,13 @@ from quatfilt._backend import get_backend, get_num_threads, set_num_threads, sim
 from quatfilt._core import is_debug_build as _is_debug_build
 from quatfilt.errors import FileAccessError, FileFormatError, QuatfiltError
 from quatfilt.filters.gaps import fill_gaps
+from quatfilt.filters.nonlocal_pose_means import nonlocal_pose_means
 from quatfilt.formats.files import read_motion, write_motion
 from quatfilt.motion.motion import Motion
 from quatfilt.motion.skeleton import EndSite, Skeleton
 from quatfilt.noise.noise import add_gaussian_noise, add_impulse_noise, noise_level
 from quatfilt.rotations.continuity import continuous
+from quatfilt.rotations.mean import mean
 from quatfilt.rotations.quaternion import conjugate, exp, geodesic_distance, log, multiply, normalize
 from quatfilt.rotations.resample import resample, slerp
 
@@ -42,8 +44,10 @@ __all__ = [
     "get_backend",
     "get_num_threads",
     "log",
+    "mean",
     "multiply",
     "noise_level",
+    "nonlocal_pose_means",
     "normalize",
     "read_motion",
     "resample",

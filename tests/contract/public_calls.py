@@ -4,11 +4,19 @@ import numpy as np
 import quatfilt as qf
 
 NOT_KERNELS = {
+    "EndSite": "holds what it is given",
+    "FileAccessError": "is an error",
+    "FileFormatError": "is an error",
+    "Motion": "holds what it is given",
+    "QuatfiltError": "is an error",
+    "Skeleton": "holds what it is given",
     "get_backend": "asks who computes",
     "get_num_threads": "asks for the number of threads",
+    "read_motion": "reads a file",
     "set_num_threads": "sets the number of threads",
     "simd_level": "asks for the vector instructions",
     "use_backend": "chooses who computes",
+    "write_motion": "writes a file",
 }
 """Public names that no array goes through, and why."""
 

@@ -14,6 +14,14 @@ _ROUNDING = 1e-9
 _ANY_LENGTH = -1
 
 
+def gap_frames(max_gap: float | None, fps: float, frames: int) -> int:
+    """Return the longest gap in frames, for a clip of `frames` frames; −1 for any length."""
+    rate = _validation.number(fps, "fps", above=0)
+    if max_gap is None:
+        return _ANY_LENGTH
+    return math.floor(min(_validation.number(max_gap, "max_gap", at_least=0) * rate, frames) + _ROUNDING)
+
+
 def fill_gaps(
     q: ArrayLike, *, max_gap: float | None = None, fps: float = 1.0, scalar_first: bool = True
 ) -> tuple[Array, Mask]:
@@ -65,13 +73,7 @@ def fill_gaps(
     """
     array = _validation.quaternions(q, "q", scalar_first=scalar_first)
     clip, _ = _validation.clip(array, "q")
-    rate = _validation.number(fps, "fps", above=0)
-    frames = _ANY_LENGTH
-    if max_gap is not None:
-        frames = math.floor(
-            min(_validation.number(max_gap, "max_gap", at_least=0) * rate, len(clip)) + _ROUNDING
-        )
-    rotations, filled = ops().fill_gaps(clip, frames)
+    rotations, filled = ops().fill_gaps(clip, gap_frames(max_gap, fps, len(clip)))
     return (
         _validation.scalar_order(rotations.reshape(array.shape), scalar_first=scalar_first),
         filled.reshape(array.shape[:-1]),

@@ -81,7 +81,7 @@ macro_rules! real_basics {
 
 impl Real for f64 {
     real_basics!(f64);
-    const TINY_SQUARE: Self = 1e-280;
+    const TINY_SQUARE: Self = 1e-200;
     const SIN_COS_LIMIT: Self = 5e5;
     const EXP_LIMIT: Self = 709.0;
 
@@ -174,9 +174,9 @@ impl Real for f64 {
         const MORE_BITS: f64 = 6.123_233_995_736_765_886_130e-17;
         let (low, high) = if self < x.abs() { (self, x.abs()) } else { (x.abs(), self) };
         let high = if high > 0.0 { high } else { 1.0 };
-        let far = low > 0.66 * high;
-        let (above, below) = if far { (low - high, low + high) } else { (low, high) };
-        let a = above / below;
+        // One select as a factor: with several the compiler computes both quotients and both polynomials.
+        let far = if low > 0.66 * high { 1.0 } else { 0.0 };
+        let a = (low - far * high) / (high + far * low);
         let z = a * a;
         let p = polynomial(
             z,
@@ -200,8 +200,7 @@ impl Real for f64 {
             ],
         );
         let tail = a * z * (p / q);
-        let octant =
-            if far { std::f64::consts::FRAC_PI_4 + (a + (tail + 0.5 * MORE_BITS)) } else { a + tail };
+        let octant = far * std::f64::consts::FRAC_PI_4 + (a + (tail + far * (0.5 * MORE_BITS)));
         let quadrant = if self > x.abs() { Self::HALF_PI - (octant - MORE_BITS) } else { octant };
         if x < 0.0 { Self::PI - (quadrant - 2.0 * MORE_BITS) } else { quadrant }
     }
@@ -209,7 +208,7 @@ impl Real for f64 {
 
 impl Real for f32 {
     real_basics!(f32);
-    const TINY_SQUARE: Self = 1e-30;
+    const TINY_SQUARE: Self = 1e-24;
     const SIN_COS_LIMIT: Self = 8000.0;
     const EXP_LIMIT: Self = 88.0;
 
@@ -263,12 +262,11 @@ impl Real for f32 {
         const TAN_PI_8: f32 = 0.414_213_56;
         let (low, high) = if self < x.abs() { (self, x.abs()) } else { (x.abs(), self) };
         let high = if high > 0.0 { high } else { 1.0 };
-        let far = low > TAN_PI_8 * high;
-        let (above, below) = if far { (low - high, low + high) } else { (low, high) };
-        let a = above / below;
+        let far = if low > TAN_PI_8 * high { 1.0 } else { 0.0 };
+        let a = (low - far * high) / (high + far * low);
         let z = a * a;
         let tail = a * z * polynomial(z, [8.053_744_5e-2, -1.387_768_6e-1, 1.997_771_1e-1, -3.333_295e-1]);
-        let octant = if far { std::f32::consts::FRAC_PI_4 + (a + tail) } else { a + tail };
+        let octant = far * std::f32::consts::FRAC_PI_4 + (a + tail);
         let quadrant = if self > x.abs() { Self::HALF_PI - octant } else { octant };
         if x < 0.0 { Self::PI - quadrant } else { quadrant }
     }

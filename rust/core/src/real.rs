@@ -39,7 +39,10 @@ pub trait Real:
     const HALF_PI: Self;
     /// The distance from 1 to the next larger number.
     const EPSILON: Self;
-    /// A square below which `x²` has lost digits to underflow: the small-angle series take over there.
+    /// A square below which `x²` has lost digits to underflow.
+    ///
+    /// Added to the square of a sine or an angle it keeps `φ / sin φ` from 0/0: the ratio is even and smooth, so that
+    /// moving both by so little does not show.
     const TINY_SQUARE: Self;
     /// The largest argument that [`Real::sin_cos`] reduces exactly enough.
     const SIN_COS_LIMIT: Self;

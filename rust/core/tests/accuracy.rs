@@ -10,7 +10,7 @@ use quatfilt_core::rotations::quaternion::{angle_between, exp_one, log_one};
 use support::Wide;
 
 /// How many arguments each table takes.
-const SAMPLES: u32 = 200_000;
+const SAMPLES: u32 = 100_000;
 
 /// A float with its unit in the last place.
 trait Float: Real {

@@ -2,9 +2,12 @@
 //!
 //! One test only: the level belongs to the process, and tests of one file run at the same time.
 
-use quatfilt_core::rotations::quaternion;
+use quatfilt_core::filters::nonlocal_pose_means::{Chart, Distance, NonlocalPoseMeans, Weights};
+use quatfilt_core::parallel::Interrupt;
+use quatfilt_core::rotations::{mean, quaternion};
 use quatfilt_core::simd::Level;
-use quatfilt_core::{Error, Real};
+use quatfilt_core::window::Boundary;
+use quatfilt_core::{ClipView, Error, Real};
 
 /// More than a task, and no multiple of a vector.
 const ROWS: usize = 20_011;
@@ -30,7 +33,50 @@ fn numbers<T: Real>(length: usize, seed: u64) -> Vec<T> {
         .collect()
 }
 
-fn at_level<T: Real>(level: Level) -> Vec<(&'static str, Vec<u64>)> {
+/// A smooth clip with noise, unit quaternions `(frames, joints, 4)`.
+fn clip<T: Real>(frames: usize, joints: usize) -> Result<Vec<T>, Error> {
+    let noise = numbers::<f64>(frames * joints * 4, 4);
+    let path = (0..frames * joints * 4).map(|i| {
+        let time = (i / (joints * 4)) as f64 / 20.0;
+        let wave = [1.0, 0.5 * (time * (2.0 - time % 2.0)), 0.3 * (time % 1.0), 0.2][i % 4];
+        let noise = if noise[i].abs() < 10.0 { noise[i] } else { 0.0 };
+        T::from_f64(wave + 0.01 * noise)
+    });
+    let mut units = vec![T::ZERO; frames * joints * 4];
+    quaternion::normalize(&path.collect::<Vec<T>>(), &mut units)?;
+    Ok(units)
+}
+
+fn filters<T: Real>() -> Result<Vec<(&'static str, Vec<T>)>, Error> {
+    let (frames, joints) = (701, 3);
+    let q = clip::<T>(frames, joints)?;
+    let view = ClipView::new(&q, frames, joints)?;
+    let interrupt = Interrupt::new();
+    let means = mean::mean(view, None, &interrupt)?;
+    let mut results = vec![("mean", means.into_iter().flatten().map(T::from_f64).collect())];
+    for (chart, name) in [(Chart::Mean, "mean"), (Chart::Identity, "identity"), (Chart::Local, "local")] {
+        for (weights, neighbors) in [(Weights::Pose, None), (Weights::Joint, None), (Weights::Pose, Some(5))]
+        {
+            let filter = NonlocalPoseMeans {
+                search_radius: Some(10),
+                patch_radius: 5,
+                bandwidth: vec![0.05; joints],
+                distance: Distance::Mean,
+                weights,
+                neighbors,
+                chart,
+                boundary: Boundary::Mirror,
+                lookahead: None,
+            };
+            let mut out = vec![T::ZERO; q.len()];
+            filter.filter(view, None, None, &mut out, &interrupt)?;
+            results.push((name, out));
+        }
+    }
+    Ok(results)
+}
+
+fn at_level<T: Real>(level: Level) -> Result<Vec<(&'static str, Vec<u64>)>, Error> {
     assert_eq!(level.set(), level);
     let maps: [(&str, usize, usize, Map<T>); 4] = [
         ("conjugate", 4, 4, quaternion::conjugate),
@@ -47,32 +93,35 @@ fn at_level<T: Real>(level: Level) -> Vec<(&'static str, Vec<u64>)> {
     let mut results = Vec::new();
     for (name, columns_in, columns_out, function) in maps {
         let mut out = vec![T::ZERO; ROWS * columns_out];
-        function(&numbers(ROWS * columns_in, 1), &mut out).expect("the lengths fit");
+        function(&numbers(ROWS * columns_in, 1), &mut out)?;
         results.push((name, bits(out)));
     }
     for (name, columns, function) in zips {
         let mut out = vec![T::ZERO; ROWS * columns];
-        function(&numbers(ROWS * 4, 2), &numbers(ROWS * 4, 3), &mut out).expect("the lengths fit");
+        function(&numbers(ROWS * 4, 2), &numbers(ROWS * 4, 3), &mut out)?;
         results.push((name, bits(out)));
     }
-    results
+    results.extend(filters::<T>()?.into_iter().map(|(name, out)| (name, bits(out))));
+    Ok(results)
 }
 
-fn same_bits<T: Real>() {
-    let expected = at_level::<T>(Level::Baseline);
+fn same_bits<T: Real>() -> Result<(), Error> {
+    let expected = at_level::<T>(Level::Baseline)?;
     for level in Level::ALL.into_iter().filter(|&level| level <= Level::detected()) {
-        for ((name, got), (_, expected)) in at_level::<T>(level).into_iter().zip(&expected) {
+        for ((name, got), (_, expected)) in at_level::<T>(level)?.into_iter().zip(&expected) {
             let differ = got.iter().zip(expected).position(|(a, b)| a != b);
             assert_eq!(differ, None, "{name} at {} differs from baseline at this element", level.name());
         }
     }
+    Ok(())
 }
 
 #[test]
-fn every_level_gives_the_same_bits() {
-    same_bits::<f32>();
-    same_bits::<f64>();
+fn every_level_gives_the_same_bits() -> Result<(), Error> {
+    same_bits::<f32>()?;
+    same_bits::<f64>()?;
     for level in Level::ALL {
         assert!(level.set() <= Level::detected());
     }
+    Ok(())
 }

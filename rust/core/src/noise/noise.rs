@@ -16,26 +16,33 @@ const MEDIAN_OF_NORMAL: f64 = 0.674_489_750_196_081_7;
 /// Least number of differences whose median is taken.
 const FEWEST: usize = 2;
 
-/// Joints per task, which share buffers.
-const GROUP: usize = 2;
-
-/// Frames per tile. Clips are read tile by tile, in the order of memory, and their increments are kept joint by joint.
-const TILE: usize = 1024;
+/// Joints per task: of float32 they fill a cache line.
+const GROUP: usize = 4;
 
 /// Frames per chunk.
 const CHUNK: usize = 64;
 
 multiversion! {
-    /// Half the rotation vectors from each of the `steps` frames from `first` to the next, NaN beside missing samples:
-    /// `out` is `(joints, 3, TILE)`.
-    fn increments<T: Real>(q: ClipView<'_, T>, first: usize, steps: usize, out: &mut [T]) {
+    /// Half the rotation vectors from each frame to the next, NaN beside missing samples, of the joints from `first`:
+    /// three planes for each.
+    fn increments<T: Real>(q: ClipView<'_, T>, first: usize, joints: usize, planes: &mut Planes<T>) {
         let row = q.joints() * 4;
+        let steps = planes.length();
+        let mut rows = [[T::ONE; GROUP * 4]; CHUNK + 1];
         for start in (0..steps).step_by(CHUNK) {
             let length = CHUNK.min(steps - start);
-            let rows = &q.data()[(first + start) * row..(first + start + length + 1) * row];
-            for (joint, planes) in out.chunks_exact_mut(3 * TILE).enumerate() {
+            let frames = &q.data()[start * row..(start + length + 1) * row];
+            // A plain copy first: its loads do not wait for each other, and memory is slow.
+            for (copy, frame) in rows.iter_mut().zip(frames.chunks_exact(row)) {
+                let frame = &frame[first * 4..(first + joints) * 4];
+                match frame.first_chunk() {
+                    Some(whole) => *copy = *whole,
+                    None => copy[..frame.len()].copy_from_slice(frame),
+                }
+            }
+            for joint in 0..joints {
                 let mut samples = [[T::ONE; CHUNK + 1]; 4];
-                for (i, row) in rows.chunks_exact(row).enumerate() {
+                for (i, row) in rows.iter().enumerate() {
                     let q = of_row(&row[joint * 4..]);
                     for c in 0..4 {
                         samples[c][i] = q[c];
@@ -52,8 +59,8 @@ multiversion! {
                         steps[c][i] = if valid { step[c] } else { T::nan() };
                     }
                 }
-                for (plane, steps) in planes.chunks_exact_mut(TILE).zip(&steps) {
-                    plane[start..start + length].copy_from_slice(&steps[..length]);
+                for (c, plane) in planes.rows_mut::<3>(joint * 3).into_iter().enumerate() {
+                    plane[start..start + length].copy_from_slice(&steps[c][..length]);
                 }
             }
         }
@@ -120,26 +127,13 @@ fn level<T: Real>(planes: [&mut [T]; 3], buffer: &mut Vec<T>) -> f64 {
 pub fn noise_level<T: Real>(q: ClipView<'_, T>, out: &mut [T]) -> Result<(), Error> {
     check_length("out", q.joints(), out.len())?;
     let steps = q.frames().saturating_sub(1);
-    let (joints, work) = (q.joints(), q.data().len() / 4);
-    let mut all = vec![T::ZERO; steps.div_ceil(TILE) * TILE * joints * 3];
-    let tiles: Vec<&mut [T]> = all.chunks_mut((TILE * joints * 3).max(1)).collect();
-    parallel::for_each(tiles, work * 5, |tile, out| {
-        increments(q, tile * TILE, TILE.min(steps - tile * TILE), out);
-        Ok(())
-    })?;
     let groups: Vec<&mut [T]> = out.chunks_mut(GROUP).collect();
-    parallel::for_each(groups, work * 7, |group, out| {
-        let mut planes = Planes::new(3, steps);
+    parallel::for_each(groups, q.data().len() * 3, |group, out| {
+        let mut planes = Planes::new(out.len() * 3, steps);
         let mut buffer = Vec::new();
-        for (i, out) in out.iter_mut().enumerate() {
-            let joint = group * GROUP + i;
-            for (tile, all) in all.chunks_exact(TILE * joints * 3).enumerate() {
-                for (c, all) in all[joint * 3 * TILE..(joint + 1) * 3 * TILE].chunks_exact(TILE).enumerate() {
-                    let length = TILE.min(steps - tile * TILE);
-                    planes.row_mut(c)[tile * TILE..tile * TILE + length].copy_from_slice(&all[..length]);
-                }
-            }
-            *out = T::from_f64(level(planes.rows_mut::<3>(0), &mut buffer));
+        increments(q, group * GROUP, out.len(), &mut planes);
+        for (joint, out) in out.iter_mut().enumerate() {
+            *out = T::from_f64(level(planes.rows_mut::<3>(joint * 3), &mut buffer));
         }
         Ok(())
     })

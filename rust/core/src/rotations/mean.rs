@@ -8,12 +8,16 @@ use crate::parallel::{self, Interrupt};
 use crate::rotations::quaternion::{between, dot, exp_one, product, unit};
 use crate::simd::multiversion;
 use crate::{ClipView, Error, Real, error::check_length};
+use std::ops::Range;
 
 /// Columns that are accumulated together: one vector of float32 at the widest level.
 const COLUMNS: usize = 16;
 
-/// Frames per task; the sums of a task are taken in `T`, those of the tasks in float64.
-const TASK_FRAMES: usize = 512;
+/// Rows per task; the sums of a task are taken in `T`, those of the tasks in float64.
+const TASK_ROWS: usize = 512;
+
+/// Rows that are gone through column by column: they stay in the first-level cache.
+const CHUNK_ROWS: usize = 16;
 
 /// Clips longer than this are first solved on a subset of about as many frames.
 const SUBSET_FRAMES: usize = 4096;
@@ -46,7 +50,7 @@ pub fn mean<T: Real>(
     let stride = frames.div_ceil(SUBSET_FRAMES).max(1);
     let none = vec![[1.0, 0.0, 0.0, 0.0]; joints];
     let mut means: Vec<[f64; 4]> =
-        pass(clip, weights, stride, moment_sums, &none, interrupt)?.iter().map(main_direction).collect();
+        pass(clip, weights, stride, add_moments, &none, interrupt)?.iter().map(main_direction).collect();
     let mut seen = vec![false; joints];
     if stride > 1 {
         solve(clip, weights, stride, &mut means, interrupt)?;
@@ -54,7 +58,7 @@ pub fn mean<T: Real>(
         seen = means.iter().map(|m| m[0].is_finite()).collect();
     }
     if seen.iter().any(|&seen| !seen) {
-        let all = pass(clip, weights, 1, moment_sums, &none, interrupt)?;
+        let all = pass(clip, weights, 1, add_moments, &none, interrupt)?;
         for ((mean, sums), _) in means.iter_mut().zip(&all).zip(&seen).filter(|(_, seen)| !**seen) {
             *mean = main_direction(sums);
         }
@@ -71,11 +75,11 @@ fn solve<T: Real>(
     means: &mut [[f64; 4]],
     interrupt: &Interrupt,
 ) -> Result<(), Error> {
-    // Newton's error after a step is of the order of the step's square.
-    let enough = (0.25 * T::EPSILON.to_f64()).sqrt();
+    // Newton's error after a step is a few hundredths of the step's square.
+    let enough = (16.0 * T::EPSILON.to_f64()).sqrt();
     let mut before = vec![f64::INFINITY; means.len()];
     for _ in 0..MAX_STEPS {
-        let sums = pass(clip, weights, stride, newton_sums, means, interrupt)?;
+        let sums = pass(clip, weights, stride, add_newton, means, interrupt)?;
         let mut largest = 0.0_f64;
         for ((mean, sums), before) in means.iter_mut().zip(&sums).zip(&mut before) {
             let gradient = [sums[1] / sums[0], sums[2] / sums[0], sums[3] / sums[0]];
@@ -141,10 +145,12 @@ fn main_direction(sums: &Sums) -> [f64; 4] {
     unit(m[largest])
 }
 
-/// What sums over the frames of some columns: [`moment_sums`] or [`newton_sums`].
-type Kernel<T> = fn(Columns<'_, T>, &[[T; 4]; COLUMNS]) -> [[T; COLUMNS]; SUMS];
+/// What adds the frames of some columns: [`add_moments`] or [`add_newton`].
+type Kernel<T> = fn(&Columns<'_, T>, &[[T; 4]; COLUMNS], &mut [[T; COLUMNS]; SUMS]);
 
-/// Sums of `kernel` at `means` over every `stride`-th frame, per joint.
+/// Sums of `kernel` at `means` over every `stride`-th row, per joint.
+///
+/// A row is a frame, or as many frames as fill a vector if there are few joints.
 fn pass<T: Real>(
     clip: ClipView<'_, T>,
     weights: Option<&[T]>,
@@ -154,87 +160,118 @@ fn pass<T: Real>(
     interrupt: &Interrupt,
 ) -> Result<Vec<Sums>, Error> {
     let joints = clip.joints();
-    let used = clip.frames().div_ceil(stride);
-    let tasks: Vec<usize> = (0..used).step_by(TASK_FRAMES).collect();
-    let centres: Vec<[T; 4]> = means.iter().map(|m| m.map(T::from_f64)).collect();
-    let parts = parallel::map(tasks, used * joints * 3, |_, first| {
+    let mut total = vec![[0.0; SUMS]; joints];
+    if joints == 0 {
+        return Ok(total);
+    }
+    let (samples, _) = clip.data().as_chunks::<4>();
+    let length = joints * COLUMNS.div_ceil(joints);
+    let rows = samples.len() / length;
+    // The last block overlaps the one before it rather than being narrower; `from` is its first column that counts.
+    let blocks: Vec<Block<T>> = (0..length)
+        .step_by(COLUMNS)
+        .map(|from| {
+            let start = from.min(length - COLUMNS);
+            let centre = std::array::from_fn(|c| means[(start + c) % joints].map(T::from_f64));
+            Block { start, from: from - start, centre }
+        })
+        .collect();
+    let used = rows.div_ceil(stride);
+    let mut tasks: Vec<Range<usize>> =
+        (0..used).step_by(TASK_ROWS).map(|first| first..(first + TASK_ROWS).min(used)).collect();
+    // Frames that do not fill a row; a subset can do without them.
+    if stride == 1 && rows * length < samples.len() {
+        tasks.push(rows..rows + 1);
+    }
+    let parts = parallel::map(tasks, used * length * 3, |_, task| {
         interrupt.check()?;
-        let end = (first + TASK_FRAMES).min(used);
-        let mut sums = vec![[0.0; SUMS]; joints];
-        for start in (0..joints).step_by(COLUMNS) {
-            let width = COLUMNS.min(joints - start);
-            let mut centre = [[T::ONE, T::ZERO, T::ZERO, T::ZERO]; COLUMNS];
-            centre[..width].copy_from_slice(&centres[start..start + width]);
-            let columns = Columns { clip, weights, start, width, first, end, stride };
-            let block = kernel(columns, &centre);
-            for (joint, sums) in sums[start..start + width].iter_mut().enumerate() {
-                *sums = std::array::from_fn(|k| block[k][joint].to_f64());
+        let mut sums = vec![[[T::ZERO; COLUMNS]; SUMS]; blocks.len()];
+        for first in task.clone().step_by(CHUNK_ROWS) {
+            let rows = first..(first + CHUNK_ROWS).min(task.end);
+            for (sums, block) in sums.iter_mut().zip(&blocks) {
+                let columns = Columns {
+                    samples,
+                    weights,
+                    start: block.start,
+                    step: length * stride,
+                    rows: rows.clone(),
+                };
+                kernel(&columns, &block.centre, sums);
             }
         }
         Ok(sums)
     })?;
-    let mut total = vec![[0.0; SUMS]; joints];
     for part in &parts {
-        for (total, part) in total.iter_mut().zip(part) {
-            for (total, part) in total.iter_mut().zip(part) {
-                *total += part;
+        for (block, sums) in blocks.iter().zip(part) {
+            for column in block.from..COLUMNS {
+                let total = &mut total[(block.start + column) % joints];
+                for (total, sums) in total.iter_mut().zip(sums) {
+                    *total += sums[column].to_f64();
+                }
             }
         }
     }
     Ok(total)
 }
 
-/// Up to [`COLUMNS`] joints from `start` in every `stride`-th frame of a range.
-#[derive(Clone, Copy)]
-struct Columns<'a, T> {
-    clip: ClipView<'a, T>,
-    weights: Option<&'a [T]>,
+/// [`COLUMNS`] neighbouring columns of the rows.
+struct Block<T> {
     start: usize,
-    width: usize,
-    first: usize,
-    end: usize,
-    stride: usize,
+    from: usize,
+    centre: [[T; 4]; COLUMNS],
 }
 
-/// Calls `add(quaternions, weights)` for each frame; missing samples become 1 with weight 0.
-#[inline(always)]
-fn for_each_frame<T: Real>(columns: Columns<'_, T>, mut add: impl FnMut(&[[T; COLUMNS]; 4], &[T; COLUMNS])) {
-    let Columns { clip, weights, start, width, first, end, stride } = columns;
-    let joints = clip.joints();
-    let (samples, _) = clip.data().as_chunks::<4>();
-    let mut padded = [[T::ZERO; 4]; COLUMNS];
-    for frame in first..end {
-        let at = frame * stride * joints + start;
-        let row = &samples[at..at + width];
-        let row: &[[T; 4]; COLUMNS] = if let Ok(row) = row.try_into() {
-            row
-        } else {
-            padded[..width].copy_from_slice(row);
-            &padded
+/// [`COLUMNS`] samples from `start` in a range of rows that begin `step` samples apart.
+struct Columns<'a, T> {
+    samples: &'a [[T; 4]],
+    weights: Option<&'a [T]>,
+    start: usize,
+    step: usize,
+    rows: Range<usize>,
+}
+
+impl<T: Real> Columns<'_, T> {
+    /// Quaternions and weights of one row; missing samples become 1 with weight 0.
+    #[inline(always)]
+    fn load(&self, row: usize) -> ([[T; COLUMNS]; 4], [T; COLUMNS]) {
+        let at = row * self.step + self.start;
+        let near: [[T; 4]; COLUMNS] = filled(self.samples, at);
+        let given = match self.weights {
+            Some(weights) => filled(weights, at),
+            None => [T::ONE; COLUMNS],
         };
-        let mut weight = [T::ONE; COLUMNS];
-        if let Some(weights) = weights {
-            weight[..width].copy_from_slice(&weights[at..at + width]);
-        }
+        let mut weight = [T::ZERO; COLUMNS];
         let mut q = [[T::ZERO; COLUMNS]; 4];
         for c in 0..COLUMNS {
-            let square = dot(row[c], row[c]);
+            let square = dot(near[c], near[c]);
             // A comparison with NaN is false.
             let valid = (square > T::TINY_SQUARE) & (square < T::ONE / T::TINY_SQUARE);
-            q[0][c] = if valid { row[c][0] } else { T::ONE };
-            q[1][c] = if valid { row[c][1] } else { T::ZERO };
-            q[2][c] = if valid { row[c][2] } else { T::ZERO };
-            q[3][c] = if valid { row[c][3] } else { T::ZERO };
-            weight[c] = if valid { weight[c] } else { T::ZERO };
+            q[0][c] = if valid { near[c][0] } else { T::ONE };
+            q[1][c] = if valid { near[c][1] } else { T::ZERO };
+            q[2][c] = if valid { near[c][2] } else { T::ZERO };
+            q[3][c] = if valid { near[c][3] } else { T::ZERO };
+            weight[c] = if valid { given[c] } else { T::ZERO };
         }
-        add(&q, &weight);
+        (q, weight)
     }
 }
 
+/// [`COLUMNS`] entries from `at`, with zeros beyond the end.
+#[inline(always)]
+fn filled<V: Copy + Default>(values: &[V], at: usize) -> [V; COLUMNS] {
+    if let Some(full) = values.get(at..at + COLUMNS) {
+        return std::array::from_fn(|c| full[c]);
+    }
+    std::array::from_fn(|c| values.get(at + c).copied().unwrap_or_default())
+}
+
 multiversion! {
-    fn moment_sums<T: Real>(columns: Columns<'_, T>, _centre: &[[T; 4]; COLUMNS]) -> [[T; COLUMNS]; SUMS] {
-        let mut sums = [[T::ZERO; COLUMNS]; SUMS];
-        for_each_frame(columns, |q, weight| {
+    /// Sums of the entries of `q qᵀ`.
+    fn add_moments<T: Real>(columns: &Columns<'_, T>, _centre: &[[T; 4]; COLUMNS], sums: &mut [[T; COLUMNS]; SUMS]) {
+        let total = sums;
+        let mut sums = *total;
+        for row in columns.rows.clone() {
+            let (q, weight) = columns.load(row);
             for c in 0..COLUMNS {
                 let [w, x, y, z] = [q[0][c], q[1][c], q[2][c], q[3][c]];
                 let n = weight[c];
@@ -251,24 +288,26 @@ multiversion! {
                 sums[9][c] += ny * z;
                 sums[10][c] += n * z * z;
             }
-        });
-        sums
+        }
+        *total = sums;
     }
 }
 
 multiversion! {
-    fn newton_sums<T: Real>(columns: Columns<'_, T>, centre: &[[T; 4]; COLUMNS]) -> [[T; COLUMNS]; SUMS] {
-        let mut sums = [[T::ZERO; COLUMNS]; SUMS];
-        for_each_frame(columns, |q, weight| {
+    /// Sums of the gradient and of the Hessian of `½ φ²` at `centre`.
+    fn add_newton<T: Real>(columns: &Columns<'_, T>, centre: &[[T; 4]; COLUMNS], sums: &mut [[T; COLUMNS]; SUMS]) {
+        let total = sums;
+        let mut sums = *total;
+        for row in columns.rows.clone() {
+            let (q, weight) = columns.load(row);
             for c in 0..COLUMNS {
                 let d = between(centre[c], [q[0][c], q[1][c], q[2][c], q[3][c]]);
                 let square = d[1] * d[1] + d[2] * d[2] + d[3] * d[3];
-                let small = square < T::TINY_SQUARE;
-                let sine = square.sqrt();
-                let angle = sine.atan2_nonnegative(d[0].abs());
-                let factor = if small { T::ONE / d[0].abs() } else { angle / sine };
+                let sine = (square + T::TINY_SQUARE).sqrt();
+                let inverse = T::ONE / sine;
+                let factor = sine.atan2_nonnegative(d[0].abs()) * inverse;
                 let cotangent = factor * d[0].abs();
-                let rest = if small { T::ZERO } else { (T::ONE - cotangent) / square };
+                let rest = (T::ONE - cotangent) * inverse * inverse;
                 let signed = (weight[c] * factor).copysign(d[0]);
                 let n = weight[c] * rest;
                 let (nx, ny) = (n * d[1], n * d[2]);
@@ -284,7 +323,7 @@ multiversion! {
                 sums[9][c] += ny * d[3];
                 sums[10][c] += n * d[3] * d[3];
             }
-        });
-        sums
+        }
+        *total = sums;
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::Real;
 use crate::clip::Planes;
-use crate::rotations::quaternion::{between, exp_one, log_one, log_short, product};
+use crate::rotations::quaternion::{between, dot, exp_one, log_one, log_short, product};
 use crate::simd::multiversion;
 
 /// Frames that a loop over lags keeps at hand: four vectors of float32 at the widest level.
@@ -55,15 +55,19 @@ multiversion! {
     }
 }
 
-/// Up to [`LANE`] samples, `step` apart; the rest is the identity.
+/// Up to [`LANE`] samples, `step` apart, as planes; the rest is the identity.
 #[inline(always)]
 fn gather<T: Real>(samples: &[[T; 4]], step: usize) -> [[T; LANE]; 4] {
+    let mut near = [[T::ONE, T::ZERO, T::ZERO, T::ZERO]; LANE];
+    for (near, sample) in near.iter_mut().zip(samples.iter().step_by(step)) {
+        *near = *sample;
+    }
     let mut q = [[T::ONE; LANE]; 4];
-    for (i, sample) in samples.iter().step_by(step).take(LANE).enumerate() {
-        q[0][i] = sample[0];
-        q[1][i] = sample[1];
-        q[2][i] = sample[2];
-        q[3][i] = sample[3];
+    for i in 0..LANE {
+        q[0][i] = near[i][0];
+        q[1][i] = near[i][1];
+        q[2][i] = near[i][2];
+        q[3][i] = near[i][3];
     }
     q
 }
@@ -202,11 +206,16 @@ multiversion! {
     }
 }
 
+/// The exponent beyond which a candidate has no weight, in either precision.
+pub(super) const FARTHEST: f64 = 120.0;
+
 multiversion! {
-    /// `e ← exp(60 − scale·e)`.
+    /// `e ← exp(60 − scale·e)`; 0 beyond [`FARTHEST`].
     pub(super) fn weigh<T: Real>(e: &mut [T], scale: T) {
         for e in e {
-            *e = (T::from_f64(SHIFT) - *e * scale).exp();
+            let exponent = *e * scale;
+            let weight = (T::from_f64(SHIFT) - exponent).exp();
+            *e = if exponent <= T::from_f64(FARTHEST) { weight } else { T::ZERO };
         }
     }
 }
@@ -253,12 +262,13 @@ multiversion! {
                 let b = &backward.row(l)[start..start + LANE];
                 let later = at + start + shift;
                 let earlier = (at + start).wrapping_sub(shift);
-                if later + LANE <= length && earlier < length && earlier + LANE <= length {
-                    for (lane, plane) in lane.iter_mut().zip(&planes) {
-                        let after = &plane[later..later + LANE];
-                        let before = &plane[earlier..earlier + LANE];
-                        for i in 0..LANE {
-                            lane[i] += f[i] * after[i] + b[i] * before[i];
+                let inside = later + LANE <= length && earlier < length && earlier + LANE <= length;
+                if inside {
+                    let after: [&[T]; N] = std::array::from_fn(|n| &planes[n][later..later + LANE]);
+                    let before: [&[T]; N] = std::array::from_fn(|n| &planes[n][earlier..earlier + LANE]);
+                    for i in 0..LANE {
+                        for n in 0..N {
+                            lane[n][i] += f[i] * after[n][i] + b[i] * before[n][i];
                         }
                     }
                 } else {
@@ -308,49 +318,67 @@ multiversion! {
 }
 
 multiversion! {
-    /// Writes `sign·m·exp(v)` to every `step`-th sample.
+    /// Writes `sign·m·exp(v)` of [`LANE`] frames to every `step`-th sample.
     pub(super) fn store_fixed<T: Real>(v: [&[T]; 3], centre: [T; 4], sign: T, out: &mut [[T; 4]], step: usize) {
         let centre = [centre[0] * sign, centre[1] * sign, centre[2] * sign, centre[3] * sign];
-        scatter(v, out, step, |_| centre);
+        let [x, y, z] = v.map(|v| &v[..LANE]);
+        let mut q = [[T::ZERO; LANE]; 4];
+        for i in 0..LANE {
+            let one = product(centre, exp_one([x[i], y[i], z[i]]));
+            q[0][i] = one[0];
+            q[1][i] = one[1];
+            q[2][i] = one[2];
+            q[3][i] = one[3];
+        }
+        scatter(&q, out, step);
     }
 }
 
 multiversion! {
-    /// Writes `sign·q·exp(v)` to every `step`-th sample.
-    pub(super) fn store_local<T: Real>(v: [&[T]; 3], q: [&[T]; 4], sign: T, out: &mut [[T; 4]], step: usize) {
-        let n = v[0].len();
-        let q = q.map(|q| &q[..n]);
-        scatter(v, out, step, |i| [q[0][i] * sign, q[1][i] * sign, q[2][i] * sign, q[3][i] * sign]);
+    /// Writes `sign·q·exp(v)` of [`LANE`] frames to every `step`-th sample.
+    pub(super) fn store_local<T: Real>(v: [&[T]; 3], base: [&[T]; 4], sign: T, out: &mut [[T; 4]], step: usize) {
+        let [x, y, z] = v.map(|v| &v[..LANE]);
+        let base = base.map(|base| &base[..LANE]);
+        let mut q = [[T::ZERO; LANE]; 4];
+        for i in 0..LANE {
+            let from = [base[0][i] * sign, base[1][i] * sign, base[2][i] * sign, base[3][i] * sign];
+            let one = product(from, exp_one([x[i], y[i], z[i]]));
+            q[0][i] = one[0];
+            q[1][i] = one[1];
+            q[2][i] = one[2];
+            q[3][i] = one[3];
+        }
+        scatter(&q, out, step);
     }
 }
 
-/// Writes `base(i)·exp(vᵢ)` to every `step`-th sample, in lanes.
+/// Writes [`LANE`] quaternions to every `step`-th sample.
 #[inline(always)]
-fn scatter<T: Real>(v: [&[T]; 3], out: &mut [[T; 4]], step: usize, base: impl Fn(usize) -> [T; 4]) {
-    let n = v[0].len();
-    let v = v.map(|v| &v[..n]);
-    for start in (0..n).step_by(LANE) {
-        let width = LANE.min(n - start);
-        let mut q = [[T::ZERO; LANE]; 4];
-        if width == LANE {
-            for i in 0..LANE {
-                let t = start + i;
-                let one = product(base(t), exp_one([v[0][t], v[1][t], v[2][t]]));
-                for c in 0..4 {
-                    q[c][i] = one[c];
-                }
-            }
-        } else {
-            for i in 0..width {
-                let t = start + i;
-                let one = product(base(t), exp_one([v[0][t], v[1][t], v[2][t]]));
-                for c in 0..4 {
-                    q[c][i] = one[c];
-                }
+fn scatter<T: Real>(q: &[[T; LANE]; 4], out: &mut [[T; 4]], step: usize) {
+    let mut near = [[T::ZERO; 4]; LANE];
+    for i in 0..LANE {
+        near[i] = [q[0][i], q[1][i], q[2][i], q[3][i]];
+    }
+    for (near, sample) in near.iter().zip(out.iter_mut().step_by(step)) {
+        *sample = *near;
+    }
+}
+
+multiversion! {
+    /// Whether the inner product of any pair is negative.
+    pub(super) fn turns<T: Real>(before: &[[T; 4]], after: &[[T; 4]]) -> bool {
+        /// Pairs at once: one vector of float32 at the widest level.
+        const PAIRS: usize = 16;
+        let mut least = [T::ZERO; PAIRS];
+        let n = before.len().min(after.len());
+        let (before, before_rest) = before[..n].as_chunks::<PAIRS>();
+        let (after, after_rest) = after[..n].as_chunks::<PAIRS>();
+        for (a, b) in before.iter().zip(after) {
+            for i in 0..PAIRS {
+                least[i] = least[i].min(dot(a[i], b[i]));
             }
         }
-        for (i, sample) in out[start * step..].iter_mut().step_by(step).take(width).enumerate() {
-            *sample = [q[0][i], q[1][i], q[2][i], q[3][i]];
-        }
+        let rest = before_rest.iter().zip(after_rest).any(|(a, b)| dot(*a, *b) < T::ZERO);
+        rest || least.iter().any(|&x| x < T::ZERO)
     }
 }

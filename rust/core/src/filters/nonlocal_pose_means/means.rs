@@ -1,4 +1,4 @@
-//! The weighted means of a group of joints over a tile.
+//! The weighted means of a tile: sums per joint, settled group by group.
 
 use super::kernels::{self, LANE, SHIFT};
 use super::likeness::Likeness;
@@ -15,12 +15,14 @@ const FLOOR: f64 = -80.0;
 /// Sums of weighted samples, and what they are divided by.
 pub(super) struct Means<'a, T> {
     tile: &'a Tile<'a, T>,
+    /// The joints that share the weights being added.
     group: Range<usize>,
     /// Largest weight of any candidate, per frame.
     most: Vec<T>,
     /// Sum of the candidates' weights, per frame.
     total: Vec<T>,
-    /// Per joint, and then for the translation: sums of 3 coordinates and, with confidence, of its share of weights.
+    /// Per joint, and then for the translation: sums of 3 coordinates and, with confidence, of its share of weights; when
+    /// settled, the means.
     sums: Planes<T>,
     /// With confidence: per joint (fixed chart) and translation, the samples times their confidence, and it.
     trusted: Option<Planes<T>>,
@@ -30,37 +32,51 @@ pub(super) struct Means<'a, T> {
 const PER_JOINT: usize = 4;
 
 impl<'a, T: Real> Means<'a, T> {
-    pub(super) fn new(tile: &'a Tile<'a, T>, group: Range<usize>) -> Self {
+    pub(super) fn new(tile: &'a Tile<'a, T>) -> Self {
+        let joints = tile.rows.len();
         let padded = tile.frames.next_multiple_of(LANE);
-        let columns = group.len() + 1;
         let trusted = tile.confidence.as_ref().map(|confidence| {
-            let mut trusted = Planes::new(columns * PER_JOINT, tile.planes.length());
-            for joint in group.clone() {
-                let row = (joint - group.start) * PER_JOINT;
-                trusted.row_mut(row + 3).copy_from_slice(confidence.row(joint));
-                if tile.clip.paths.charts[joint] != JointChart::Local {
-                    for (c, x) in tile.planes.rows_from::<3>(tile.rows[joint]).into_iter().enumerate() {
-                        kernels::multiply_planes(trusted.row_mut(row + c), x, confidence.row(joint));
-                    }
+            let mut trusted = Planes::new((joints + 1) * PER_JOINT, tile.planes.length());
+            let moved =
+                tile.translation.as_ref().map(|translation| (joints, 0, translation.rows_from::<3>(0)));
+            let fixed = (0..joints)
+                .filter(|&joint| tile.clip.paths.charts[joint] != JointChart::Local)
+                .map(|joint| (joint, joint, tile.planes.rows_from::<3>(tile.rows[joint])));
+            for (index, joint, planes) in fixed.chain(moved) {
+                for (c, x) in planes.into_iter().enumerate() {
+                    kernels::multiply_planes(
+                        trusted.row_mut(index * PER_JOINT + c),
+                        x,
+                        confidence.row(joint),
+                    );
                 }
             }
-            if let Some(translation) = tile.translation.as_ref().filter(|_| group.start == 0) {
-                let row = group.len() * PER_JOINT;
-                trusted.row_mut(row + 3).copy_from_slice(confidence.row(0));
-                for c in 0..3 {
-                    kernels::multiply_planes(trusted.row_mut(row + c), translation.row(c), confidence.row(0));
-                }
+            for index in 0..=joints {
+                let joint = if index == joints { 0 } else { index };
+                trusted.row_mut(index * PER_JOINT + 3).copy_from_slice(confidence.row(joint));
             }
             trusted
         });
         Self {
             tile,
-            group,
+            group: 0..0,
             most: vec![T::ZERO; padded],
             total: vec![T::ZERO; padded],
-            sums: Planes::new(columns * PER_JOINT, padded),
+            sums: Planes::new((joints + 1) * PER_JOINT, padded),
             trusted,
         }
+    }
+
+    /// Starts with the joints of a group, which share weights.
+    pub(super) fn begin(&mut self, group: Range<usize>) {
+        self.group = group;
+        self.most.fill(T::ZERO);
+        self.total.fill(T::ZERO);
+    }
+
+    /// The translation, if the group takes it along.
+    fn moved(&self) -> Option<&'a Planes<T>> {
+        self.tile.translation.as_ref().filter(|_| self.group.start == 0)
     }
 
     /// Notes one lag's weights: their largest and their sum.
@@ -68,14 +84,13 @@ impl<'a, T: Real> Means<'a, T> {
         kernels::note_weights(&mut self.most, &mut self.total, weights);
     }
 
-    /// The rows of sums with a fixed chart: position in the group, and the planes of their samples.
+    /// What has a fixed chart: its index among the sums, and the planes of its samples.
     fn fixed(&self) -> Vec<(usize, [&'a [T]; 3])> {
         let tile = self.tile;
         let joints = self.group.clone().filter(|&joint| tile.clip.paths.charts[joint] != JointChart::Local);
-        let moved = tile.translation.as_ref().filter(|_| self.group.start == 0);
         joints
-            .map(|joint| (joint - self.group.start, tile.planes.rows_from::<3>(tile.rows[joint])))
-            .chain(moved.map(|translation| (self.group.len(), translation.rows_from::<3>(0))))
+            .map(|joint| (joint, tile.planes.rows_from::<3>(tile.rows[joint])))
+            .chain(self.moved().map(|translation| (tile.rows.len(), translation.rows_from::<3>(0))))
             .collect()
     }
 
@@ -111,13 +126,12 @@ impl<'a, T: Real> Means<'a, T> {
     pub(super) fn add_local(&mut self, likeness: &Likeness<'_, T>, piece: &Piece, lag: usize) {
         let tile = self.tile;
         for joint in self.group.clone().filter(|&joint| tile.clip.paths.charts[joint] == JointChart::Local) {
-            let index = joint - self.group.start;
             for (side, sign, later) in [(&piece.forward, T::ONE, lag), (&piece.backward, -T::ONE, 0)] {
                 let Some(side) = side else { continue };
                 let mut weights = likeness.current()[side.pairs.clone()].to_vec();
                 if let Some(trusted) = &self.trusted {
                     let from = piece.pairs.start + side.pairs.start + later;
-                    let confidence = &trusted.row(index * PER_JOINT + 3)[from..from + weights.len()];
+                    let confidence = &trusted.row(joint * PER_JOINT + 3)[from..from + weights.len()];
                     for (weight, c) in weights.iter_mut().zip(confidence) {
                         *weight *= *c;
                     }
@@ -125,7 +139,7 @@ impl<'a, T: Real> Means<'a, T> {
                 let logs = likeness.pair_logs(joint, side.pairs.clone());
                 let [x, y, z, share] = self
                     .sums
-                    .rows_mut::<PER_JOINT>(index * PER_JOINT)
+                    .rows_mut::<PER_JOINT>(joint * PER_JOINT)
                     .map(|row| &mut row[side.frames.clone()]);
                 for (sums, logs) in [x, y, z].into_iter().zip(logs) {
                     kernels::add_products(sums, &weights, logs, sign);
@@ -144,7 +158,7 @@ impl<'a, T: Real> Means<'a, T> {
         self.most[frame] = self.most[frame].max(weight);
         self.total[frame] += weight;
         for joint in self.group.clone() {
-            let row = (joint - self.group.start) * PER_JOINT;
+            let row = joint * PER_JOINT;
             let trust = self.trusted.as_ref().map_or(T::ONE, |trusted| trusted.row(row + 3)[candidate]);
             let value = if tile.clip.paths.charts[joint] == JointChart::Local {
                 let q = tile.planes.rows_from::<4>(tile.rows[joint]);
@@ -155,8 +169,8 @@ impl<'a, T: Real> Means<'a, T> {
             };
             self.add_value(row, frame, weight * trust, value);
         }
-        if let Some(translation) = tile.translation.as_ref().filter(|_| self.group.start == 0) {
-            let row = self.group.len() * PER_JOINT;
+        if let Some(translation) = self.moved() {
+            let row = tile.rows.len() * PER_JOINT;
             let trust = self.trusted.as_ref().map_or(T::ONE, |trusted| trusted.row(row + 3)[candidate]);
             self.add_value(row, frame, weight * trust, translation.rows_from::<3>(0).map(|x| x[candidate]));
         }
@@ -169,58 +183,75 @@ impl<'a, T: Real> Means<'a, T> {
         self.sums.row_mut(row + 3)[frame] += weight;
     }
 
-    /// Divides, and writes rotations to `out`, `(frames, joints, 4)`, and the translation to `moved`, `(frames, 3)`.
-    pub(super) fn store(mut self, out: &mut [T], moved: &mut [T]) {
+    /// Divides the sums of the group by their weights: means in the chart, or about the sample in the local chart.
+    pub(super) fn settle(&mut self) {
         let tile = self.tile;
         let floor = T::from_f64(SHIFT + FLOOR).exp();
         let own: Vec<T> = self.most.iter().map(|most| most.max(floor)).collect();
+        let here = tile.at..tile.at + tile.frames;
+        let mut trusted_own = own.clone();
+        let moved = self.moved().map(|translation| (tile.rows.len(), Some(translation.rows_from::<3>(0))));
+        let joints = self.group.clone().map(|joint| {
+            let fixed = tile.clip.paths.charts[joint] != JointChart::Local;
+            (joint, fixed.then(|| tile.planes.rows_from::<3>(tile.rows[joint])))
+        });
+        for (index, planes) in joints.chain(moved) {
+            let row = index * PER_JOINT;
+            if let Some(trusted) = &self.trusted {
+                let confidence = &trusted.row(row + 3)[here.clone()];
+                kernels::multiply_planes(&mut trusted_own[..tile.frames], &own, confidence);
+            }
+            let [x, y, z, share] = self.sums.rows_mut::<PER_JOINT>(row).map(|sums| &mut sums[..tile.frames]);
+            let total = if self.trusted.is_some() { &share[..] } else { &self.total[..tile.frames] };
+            for (c, sums) in [x, y, z].into_iter().enumerate() {
+                match planes {
+                    Some(planes) => kernels::settle(sums, &planes[c][here.clone()], total, &trusted_own),
+                    None => kernels::settle_local(sums, total, &trusted_own),
+                }
+            }
+        }
+    }
+
+    /// Writes the settled means to `out`, `(frames, joints, 4)`, and to `moved`, `(frames, 3)`.
+    ///
+    /// Returns whether the sign of a rotation turns from one frame to the next.
+    pub(super) fn store(&self, out: &mut [T], moved: &mut [T]) -> bool {
+        let tile = self.tile;
         let joints = tile.rows.len();
         let (samples, _) = out.as_chunks_mut::<4>();
-        let frames = tile.frames;
-        let here = tile.at..tile.at + frames;
-        let mut trusted_own = own.clone();
-        for joint in self.group.clone() {
-            let row = (joint - self.group.start) * PER_JOINT;
-            if let Some(trusted) = &self.trusted {
-                kernels::multiply_planes(
-                    &mut trusted_own[..frames],
-                    &own,
-                    &trusted.row(row + 3)[here.clone()],
-                );
-            }
-            let [x, y, z, share] = self.sums.rows_mut::<PER_JOINT>(row).map(|sums| &mut sums[..frames]);
-            let total = if self.trusted.is_some() { &share[..] } else { &self.total[..frames] };
-            let sign = tile.clip.paths.sign(tile.clip.reach.pad, joint);
-            let to = &mut samples[joint..];
-            match tile.clip.paths.charts[joint] {
-                JointChart::Fixed(centre) => {
-                    let planes = tile.planes.rows_from::<3>(tile.rows[joint]).map(|x| &x[here.clone()]);
-                    for (sums, plane) in [&mut *x, &mut *y, &mut *z].into_iter().zip(planes) {
-                        kernels::settle(sums, plane, total, &trusted_own);
+        // Rows are put together in a buffer that stays in the cache, and then written once, in order.
+        let mut rows = vec![[T::ZERO; 4]; LANE * joints];
+        let mut before: Option<Vec<[T; 4]>> = None;
+        let mut turned = false;
+        for (chunk, out) in samples.chunks_mut(LANE * joints).enumerate() {
+            let start = chunk * LANE;
+            let width = out.len() / joints;
+            for joint in 0..joints {
+                let sign = tile.clip.paths.sign(tile.clip.reach.pad, joint);
+                let v = self.sums.rows_from::<3>(joint * PER_JOINT).map(|sums| &sums[start..start + LANE]);
+                let to = &mut rows[joint..];
+                match tile.clip.paths.charts[joint] {
+                    JointChart::Fixed(centre) => kernels::store_fixed(v, centre, sign, to, joints),
+                    JointChart::Local => {
+                        let at = tile.at + start;
+                        let q = tile.planes.rows_from::<4>(tile.rows[joint]).map(|q| &q[at..at + LANE]);
+                        kernels::store_local(v, q, sign, to, joints);
                     }
-                    kernels::store_fixed([x, y, z], centre, sign, to, joints);
-                }
-                JointChart::Local => {
-                    for sums in [&mut *x, &mut *y, &mut *z] {
-                        kernels::settle_local(sums, total, &trusted_own);
-                    }
-                    let q = tile.planes.rows_from::<4>(tile.rows[joint]).map(|q| &q[here.clone()]);
-                    kernels::store_local([x, y, z], q, sign, to, joints);
                 }
             }
+            let rows = &rows[..width * joints];
+            turned |= kernels::turns(rows, &rows[joints..])
+                || before.as_ref().is_some_and(|before| kernels::turns(before, rows));
+            before = Some(rows[rows.len() - joints..].to_vec());
+            out.copy_from_slice(rows);
         }
-        let Some(translation) = tile.translation.as_ref().filter(|_| self.group.start == 0) else { return };
-        let row = self.group.len() * PER_JOINT;
-        if let Some(trusted) = &self.trusted {
-            kernels::multiply_planes(&mut trusted_own[..frames], &own, &trusted.row(row + 3)[here.clone()]);
-        }
-        let [x, y, z, share] = self.sums.rows_mut::<PER_JOINT>(row).map(|sums| &mut sums[..frames]);
-        let total = if self.trusted.is_some() { &share[..] } else { &self.total[..frames] };
-        for (c, sums) in [x, y, z].into_iter().enumerate() {
-            kernels::settle(sums, &translation.row(c)[here.clone()], total, &trusted_own);
-            for (moved, sums) in moved[c..].iter_mut().step_by(3).zip(sums) {
-                *moved = *sums;
+        if tile.translation.is_some() {
+            for (c, sums) in self.sums.rows_from::<3>(joints * PER_JOINT).into_iter().enumerate() {
+                for (moved, sums) in moved[c..].iter_mut().step_by(3).zip(sums) {
+                    *moved = *sums;
+                }
             }
         }
+        turned
     }
 }

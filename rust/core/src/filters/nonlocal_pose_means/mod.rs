@@ -29,6 +29,7 @@ mod tile;
 
 use crate::error::check_length;
 use crate::parallel::{self, Interrupt};
+use crate::rotations::quaternion;
 use crate::window::{Boundary, Extended};
 use crate::{ClipView, Error, Real};
 use path::Paths;
@@ -155,9 +156,9 @@ impl NonlocalPoseMeans {
             }
             None => (None, &mut [][..]),
         };
-        if frames == 0 || joints == 0 {
+        if frames < 2 || joints == 0 {
             moved_out.copy_from_slice(moved.unwrap_or_default());
-            return Ok(());
+            return quaternion::normalize(clip.data(), out);
         }
         let reach = self.reach(frames);
         let extended = Extended::new(clip, reach.pad, self.boundary);
@@ -178,12 +179,36 @@ impl NonlocalPoseMeans {
             .zip(chunks_or_empty(moved_out, length * moved_columns))
             .collect();
         let work = frames * joints * (20 + 2 * (reach.back.min(frames) + reach.ahead.min(frames)));
-        parallel::for_each(tiles, work, |index, (out, moved_out)| {
+        let turned = parallel::map(tiles, work, |index, (out, moved_out)| {
             let first = index * length;
             Tile::new(&shared, first, (first + length).min(frames), interrupt)?
                 .filter(out, moved_out, interrupt)
         })?;
-        paths.connect(clip, out)
+        let row = joints * 4;
+        let meets = |frame: usize| {
+            let before = if frame == 0 { &clip.data()[..row] } else { &out[(frame - 1) * row..frame * row] };
+            kernels::turns(before.as_chunks().0, out[frame * row..(frame + 1) * row].as_chunks().0)
+        };
+        if turned.contains(&true) || (0..frames).step_by(length).any(meets) {
+            connect(&clip.data()[..row], out);
+        }
+        Ok(())
+    }
+}
+
+/// Makes a clip sign-continuous from the hemisphere of `first`.
+///
+/// Means of a continuous path are continuous as a rule; a clip that jumps by half turns may leave a flip.
+fn connect<T: Real>(first: &[T], out: &mut [T]) {
+    let mut before = first.as_chunks::<4>().0.to_vec();
+    let (samples, _) = out.as_chunks_mut::<4>();
+    for row in samples.chunks_exact_mut(before.len()) {
+        for (q, before) in row.iter_mut().zip(&mut before) {
+            if quaternion::dot(*before, *q) < T::ZERO {
+                *q = q.map(|x| -x);
+            }
+            *before = *q;
+        }
     }
 }
 

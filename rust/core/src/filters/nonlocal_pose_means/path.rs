@@ -3,7 +3,6 @@
 use super::Chart;
 use crate::parallel::{self, Interrupt};
 use crate::rotations::mean::mean;
-use crate::rotations::quaternion::dot;
 use crate::simd::multiversion;
 use crate::window::Extended;
 use crate::{ClipView, Error, Real};
@@ -96,7 +95,7 @@ impl<T: Real> Paths<T> {
             let first = starts[pad / TASK_FRAMES][joint] ^ flips[pad * joints + joint];
             let turn = match chart {
                 Chart::Mean => sum[joint] < 0.0,
-                Chart::Identity => (clip.at(0, joint)[0] < T::ZERO) != (first == 1),
+                Chart::Identity => lower(clip.at(0, joint)) != (first == 1),
                 Chart::Local => first == 1,
             };
             whole[joint] = u8::from(turn);
@@ -122,36 +121,6 @@ impl<T: Real> Paths<T> {
         Ok(Self { charts, flips })
     }
 
-    /// Makes the filtered clip sign-continuous from the hemisphere of the input's first frame.
-    ///
-    /// Means of a continuous path are continuous as a rule; a clip that jumps by half turns may still leave a flip.
-    pub(super) fn connect(&self, clip: ClipView<'_, T>, out: &mut [T]) -> Result<(), Error> {
-        let (frames, joints) = (clip.frames(), clip.joints());
-        let (first, _) = clip.data()[..joints * 4].as_chunks::<4>();
-        let (samples, _) = out.as_chunks::<4>();
-        let tasks: Vec<usize> = (0..frames).step_by(TASK_FRAMES).collect();
-        let turns = parallel::map(tasks, frames * joints, |_, start| {
-            let end = (start + TASK_FRAMES).min(frames);
-            let rows = &samples[start.saturating_sub(1) * joints..end * joints];
-            let inside = turns_anywhere(rows, &rows[joints.min(rows.len())..]);
-            Ok(inside || (start == 0 && turns_anywhere(first, rows)))
-        })?;
-        if !turns.contains(&true) {
-            return Ok(());
-        }
-        let (samples, _) = out.as_chunks_mut::<4>();
-        let mut before = first.to_vec();
-        for row in samples.chunks_exact_mut(joints) {
-            for (q, before) in row.iter_mut().zip(&mut before) {
-                if dot(*before, *q) < T::ZERO {
-                    *q = q.map(|x| -x);
-                }
-                *before = *q;
-            }
-        }
-        Ok(())
-    }
-
     /// The sign by which the path turns a sample, as 1 or −1.
     #[inline(always)]
     pub(super) fn sign(&self, frame: usize, joint: usize) -> T {
@@ -159,7 +128,13 @@ impl<T: Real> Paths<T> {
     }
 }
 
-/// Marks the flips of the rows of one task, the first row's sign being what it is, and measures `m · q` along the path.
+/// Joints that are followed together: one vector of float32 at the widest level.
+const COLUMNS: usize = 16;
+
+/// Frames that are gone through column by column: their rows stay in the first-level cache.
+const CHUNK_FRAMES: usize = 16;
+
+/// Marks the flips of the rows of one task, and measures the cosine of the half angle to the centres along the path.
 ///
 /// The first row of a task is compared with the row before it, so that tasks can be chained. Sums are taken over `own`
 /// frames only.
@@ -172,70 +147,117 @@ fn follow<T: Real>(
 ) -> Vec<Extent<T>> {
     let joints = centres.len();
     let end = first + flips.len() / joints;
-    let mut before: Option<&[[T; 4]]> = first.checked_sub(1).map(|frame| extended.row(frame));
-    let mut extents = vec![Extent { sum: T::ZERO, least: T::from_f64(2.0), most: T::from_f64(-2.0) }; joints];
-    let mut turned = vec![0_u8; joints];
+    let start = extended.row(first.saturating_sub(1));
+    let width = COLUMNS.min(joints);
+    // The last columns overlap those before them rather than being fewer.
+    let columns: Vec<usize> = (0..joints).step_by(COLUMNS).map(|column| column.min(joints - width)).collect();
+    let mut states: Vec<State<T>> = columns
+        .iter()
+        .map(|&column| {
+            let range = column..column + width;
+            State::new(&start[range.clone()], &centres[range])
+        })
+        .collect();
     for (at, rows) in extended.blocks(first..end) {
-        let (samples, _) = rows.as_chunks::<4>();
-        for (i, row) in samples.chunks_exact(joints).enumerate() {
-            let frame = at + i;
-            let out = &mut flips[(frame - first) * joints..(frame - first + 1) * joints];
-            follow_row(
-                before.unwrap_or(row),
-                row,
-                centres,
-                &mut turned,
-                out,
-                &mut extents,
-                own.contains(&frame),
-            );
-            before = Some(row);
-        }
-    }
-    extents
-}
-
-multiversion! {
-    fn follow_row<T: Real>(
-        before: &[[T; 4]],
-        row: &[[T; 4]],
-        centres: &[[T; 4]],
-        turned: &mut [u8],
-        flips: &mut [u8],
-        extents: &mut [Extent<T>],
-        own: bool,
-    ) {
-        let n = row.len();
-        let (before, centres, turned) = (&before[..n], &centres[..n], &mut turned[..n]);
-        let (flips, extents) = (&mut flips[..n], &mut extents[..n]);
-        let share = if own { T::ONE } else { T::ZERO };
-        for j in 0..n {
-            turned[j] ^= u8::from(dot(before[j], row[j]) < T::ZERO);
-            flips[j] = turned[j];
-            let scalar = dot(centres[j], row[j]) / dot(row[j], row[j]).sqrt();
-            let scalar = if turned[j] == 0 { scalar } else { -scalar };
-            extents[j].sum += share * scalar;
-            extents[j].least = extents[j].least.min(scalar);
-            extents[j].most = extents[j].most.max(scalar);
-        }
-    }
-}
-
-multiversion! {
-    /// Whether any pair has a negative inner product.
-    fn turns_anywhere<T: Real>(before: &[[T; 4]], after: &[[T; 4]]) -> bool {
-        /// Pairs at once: one vector of float32 at the widest level.
-        const PAIRS: usize = 16;
-        let mut least = [T::ZERO; PAIRS];
-        let n = before.len().min(after.len());
-        let (before, before_rest) = before[..n].as_chunks::<PAIRS>();
-        let (after, after_rest) = after[..n].as_chunks::<PAIRS>();
-        for (a, b) in before.iter().zip(after) {
-            for i in 0..PAIRS {
-                least[i] = least[i].min(dot(a[i], b[i]));
+        let flips = &mut flips[(at - first) * joints..];
+        let chunks = rows.chunks(CHUNK_FRAMES * joints * 4).zip(flips.chunks_mut(CHUNK_FRAMES * joints));
+        for (chunk, (rows, flips)) in chunks.enumerate() {
+            let at = at + chunk * CHUNK_FRAMES;
+            let inside = own.start.saturating_sub(at)..own.end.saturating_sub(at);
+            for (&column, state) in columns.iter().zip(&mut states) {
+                let samples = rows.as_chunks::<4>().0;
+                follow_columns(state, samples, flips, joints, column, width, inside.clone());
             }
         }
-        let rest = before_rest.iter().zip(after_rest).any(|(a, b)| dot(*a, *b) < T::ZERO);
-        rest || least.iter().any(|&x| x < T::ZERO)
     }
+    (0..joints)
+        .map(|joint| {
+            let block = joint / COLUMNS;
+            let (state, c) = (&states[block], joint - columns[block]);
+            Extent { sum: state.sum[c], least: state.least[c], most: state.most[c] }
+        })
+        .collect()
+}
+
+/// What is known of some joints up to a frame.
+struct State<T> {
+    centre: [[T; COLUMNS]; 4],
+    before: [[T; COLUMNS]; 4],
+    sign: [T; COLUMNS],
+    sum: [T; COLUMNS],
+    least: [T; COLUMNS],
+    most: [T; COLUMNS],
+}
+
+impl<T: Real> State<T> {
+    fn new(before: &[[T; 4]], centres: &[[T; 4]]) -> Self {
+        Self {
+            centre: turned(centres),
+            before: turned(before),
+            sign: [T::ONE; COLUMNS],
+            sum: [T::ZERO; COLUMNS],
+            least: [T::TWO; COLUMNS],
+            most: [-T::TWO; COLUMNS],
+        }
+    }
+}
+
+/// Up to [`COLUMNS`] quaternions as four rows of components.
+#[inline(always)]
+fn turned<T: Real>(samples: &[[T; 4]]) -> [[T; COLUMNS]; 4] {
+    let mut row = [[T::ONE; 4]; COLUMNS];
+    row[..samples.len()].copy_from_slice(samples);
+    let mut q = [[T::ZERO; COLUMNS]; 4];
+    for c in 0..COLUMNS {
+        q[0][c] = row[c][0];
+        q[1][c] = row[c][1];
+        q[2][c] = row[c][2];
+        q[3][c] = row[c][3];
+    }
+    q
+}
+
+multiversion! {
+    /// Follows the joints `column..column + width` through rows of samples; `own` rows enter the sums.
+    fn follow_columns<T: Real>(
+        state: &mut State<T>,
+        samples: &[[T; 4]],
+        flips: &mut [u8],
+        joints: usize,
+        column: usize,
+        width: usize,
+        own: std::ops::Range<usize>,
+    ) {
+        let State { centre, before, sign, sum, least, most } = state;
+        let rows = samples.chunks_exact(joints).zip(flips.chunks_exact_mut(joints)).enumerate();
+        for (frame, (row, flips)) in rows {
+            let row = &row[column..column + width];
+            let q = if width == COLUMNS { turned(&row[..COLUMNS]) } else { turned(row) };
+            let share = if own.contains(&frame) { T::ONE } else { T::ZERO };
+            let mut marks = [0_u8; COLUMNS];
+            for c in 0..COLUMNS {
+                let [w, x, y, z] = [q[0][c], q[1][c], q[2][c], q[3][c]];
+                let step = (before[0][c] * w + before[1][c] * x) + (before[2][c] * y + before[3][c] * z);
+                let cosine = (centre[0][c] * w + centre[1][c] * x) + (centre[2][c] * y + centre[3][c] * z);
+                let square = (w * w + x * x) + (y * y + z * z);
+                sign[c] = if step < T::ZERO { -sign[c] } else { sign[c] };
+                let cosine = sign[c] * cosine / square.sqrt();
+                sum[c] += share * cosine;
+                least[c] = least[c].min(cosine);
+                most[c] = most[c].max(cosine);
+                marks[c] = u8::from(sign[c] < T::ZERO);
+            }
+            *before = q;
+            if width == COLUMNS {
+                flips[column..column + COLUMNS].copy_from_slice(&marks);
+            } else {
+                flips[column..column + width].copy_from_slice(&marks[..width]);
+            }
+        }
+    }
+}
+
+/// Whether the first component that is not zero is negative: the half of S³ that does not hold the identity.
+fn lower<T: Real>(q: [T; 4]) -> bool {
+    q.into_iter().find(|&x| x != T::ZERO).is_some_and(|x| x < T::ZERO)
 }

@@ -112,9 +112,7 @@ impl<'a, T: Real> Tile<'a, T> {
         let mut planes = Planes::new(count, to - from + LANE);
         for (at, block) in clip.extended.blocks(from..to) {
             let (samples, _) = block.as_chunks::<4>();
-            for (joint, &row) in rows.iter().enumerate() {
-                load(clip.paths, &mut planes, row, joint, samples, at, at - from);
-            }
+            load(clip.paths, &mut planes, &rows, samples, at, at - from);
         }
         let values = |source: &[T], columns: usize, slope: bool, boundary: Boundary| {
             let mut planes = Planes::new(columns, to - from + LANE);
@@ -140,44 +138,49 @@ impl<'a, T: Real> Tile<'a, T> {
     }
 
     /// Filters the tile into `out`, `(frames, joints, 4)`, and the translation into `moved`.
-    pub(super) fn filter(&self, out: &mut [T], moved: &mut [T], interrupt: &Interrupt) -> Result<(), Error> {
-        let joints = self.rows.len();
-        match self.clip.filter.weights {
-            Weights::Pose => self.filter_group(0..joints, out, moved, interrupt)?,
-            Weights::Joint => {
-                for joint in 0..joints {
-                    self.filter_group(joint..joint + 1, out, moved, interrupt)?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Filters joints that share weights; the group of the first joint takes the translation along.
-    fn filter_group(
+    ///
+    /// Returns whether the sign of a rotation turns from one frame to the next.
+    pub(super) fn filter(
         &self,
-        group: Range<usize>,
         out: &mut [T],
         moved: &mut [T],
         interrupt: &Interrupt,
+    ) -> Result<bool, Error> {
+        let joints = self.rows.len();
+        let mut means = Means::new(self);
+        let groups: Vec<Range<usize>> = match self.clip.filter.weights {
+            Weights::Pose => std::iter::once(0..joints).collect(),
+            Weights::Joint => (0..joints).map(|joint| joint..joint + 1).collect(),
+        };
+        for group in groups {
+            means.begin(group.clone());
+            let mut likeness = Likeness::new(self, group);
+            match self.clip.filter.neighbors {
+                None => self.add_all(&mut likeness, &mut means, interrupt)?,
+                Some(count) => self.add_nearest(count, &mut likeness, &mut means, interrupt)?,
+            }
+            means.settle();
+        }
+        Ok(means.store(out, moved))
+    }
+
+    /// Adds the `count` most similar candidates of the window.
+    fn add_nearest(
+        &self,
+        count: usize,
+        likeness: &mut Likeness<'_, T>,
+        means: &mut Means<'_, T>,
+        interrupt: &Interrupt,
     ) -> Result<(), Error> {
-        let mut likeness = Likeness::new(self, group.clone());
-        let mut means = Means::new(self, group);
-        match self.clip.filter.neighbors {
-            None => self.add_all(&mut likeness, &mut means, interrupt)?,
-            Some(count) => {
-                let mut nearest = Nearest::new(self.frames, count);
-                for lag in 1..=self.clip.reach.back {
-                    interrupt.check()?;
-                    for piece in self.pieces(lag) {
-                        let exponents = likeness.exponents(lag, piece.pairs.clone());
-                        nearest.offer(lag, &piece, exponents);
-                    }
-                }
-                nearest.add_to(&mut means);
+        let mut nearest = Nearest::new(self.frames, count);
+        for lag in 1..=self.clip.reach.back {
+            interrupt.check()?;
+            for piece in self.pieces(lag) {
+                let exponents = likeness.exponents(lag, piece.pairs.clone());
+                nearest.offer(lag, &piece, exponents);
             }
         }
-        means.store(out, moved);
+        nearest.add_to(means);
         Ok(())
     }
 
@@ -249,34 +252,38 @@ impl<'a, T: Real> Tile<'a, T> {
     }
 }
 
-/// Loads one joint of a block of rows, the first of which is the extended frame `frame`, into its planes from `at`.
+/// Loads a block of rows, the first of which is the extended frame `frame`, into the planes from `at`.
 fn load<T: Real>(
     paths: &Paths<T>,
     planes: &mut Planes<T>,
-    row: usize,
-    joint: usize,
+    rows: &[usize],
     samples: &[[T; 4]],
     frame: usize,
     at: usize,
 ) {
-    let joints = paths.charts.len();
-    let frames = samples.len() / joints;
-    for start in (0..frames).step_by(LANE) {
-        let end = frames.min(start + LANE);
-        let mut signs = [T::ONE; LANE];
-        for (i, sign) in signs[..end - start].iter_mut().enumerate() {
-            *sign = paths.sign(frame + start + i, joint);
-        }
-        let from = &samples[start * joints + joint..];
-        let range = at + start..at + end;
-        match paths.charts[joint] {
-            JointChart::Fixed(centre) => {
-                let [x, y, z] = planes.rows_mut::<3>(row).map(|plane| &mut plane[range.clone()]);
-                kernels::load_fixed(from, joints, &signs, conjugate_one(centre), x, y, z);
+    let joints = rows.len();
+    // Rows are copied in order into a buffer that stays in the cache, and taken apart there.
+    let mut buffer = vec![[T::ZERO; 4]; LANE * joints];
+    for (chunk, samples) in samples.chunks(LANE * joints).enumerate() {
+        let width = samples.len() / joints;
+        let buffer = &mut buffer[..samples.len()];
+        buffer.copy_from_slice(samples);
+        let start = chunk * LANE;
+        let range = at + start..at + start + width;
+        for (joint, &row) in rows.iter().enumerate() {
+            let mut signs = [T::ONE; LANE];
+            for (i, sign) in signs[..width].iter_mut().enumerate() {
+                *sign = paths.sign(frame + start + i, joint);
             }
-            JointChart::Local => {
-                let [w, x, y, z] = planes.rows_mut::<4>(row).map(|plane| &mut plane[range.clone()]);
-                kernels::load_local(from, joints, &signs, w, x, y, z);
+            match paths.charts[joint] {
+                JointChart::Fixed(centre) => {
+                    let [x, y, z] = planes.rows_mut::<3>(row).map(|plane| &mut plane[range.clone()]);
+                    kernels::load_fixed(&buffer[joint..], joints, &signs, conjugate_one(centre), x, y, z);
+                }
+                JointChart::Local => {
+                    let [w, x, y, z] = planes.rows_mut::<4>(row).map(|plane| &mut plane[range.clone()]);
+                    kernels::load_local(&buffer[joint..], joints, &signs, w, x, y, z);
+                }
             }
         }
     }

@@ -57,11 +57,9 @@ pub fn unit<T: Real>(q: [T; 4]) -> [T; 4] {
 #[must_use]
 pub fn log_one<T: Real>(q: [T; 4]) -> [T; 3] {
     let square = q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    let small = square < T::TINY_SQUARE;
-    let sine = square.sqrt();
-    let angle = sine.atan2_nonnegative(q[0]);
-    let factor = if small { T::ONE / q[0] } else { angle / sine };
-    let opposite = small & (q[0] <= T::ZERO);
+    let sine = (square + T::TINY_SQUARE).sqrt();
+    let factor = sine.atan2_nonnegative(q[0]) / sine;
+    let opposite = (square < T::TINY_SQUARE) & (q[0] <= T::ZERO);
     [
         if opposite { T::PI } else { q[1] * factor },
         if opposite { T::ZERO } else { q[2] * factor },
@@ -74,11 +72,8 @@ pub fn log_one<T: Real>(q: [T; 4]) -> [T; 3] {
 #[must_use]
 pub fn log_short<T: Real>(q: [T; 4]) -> [T; 3] {
     let square = q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    let small = square < T::TINY_SQUARE;
-    let sine = square.sqrt();
-    let angle = sine.atan2_nonnegative(q[0].abs());
-    let factor = if small { T::ONE / q[0].abs() } else { angle / sine };
-    let factor = factor.copysign(q[0]);
+    let sine = (square + T::TINY_SQUARE).sqrt();
+    let factor = (sine.atan2_nonnegative(q[0].abs()) / sine).copysign(q[0]);
     [q[1] * factor, q[2] * factor, q[3] * factor]
 }
 
@@ -87,9 +82,9 @@ pub fn log_short<T: Real>(q: [T; 4]) -> [T; 3] {
 #[must_use]
 pub fn exp_one<T: Real>(v: [T; 3]) -> [T; 4] {
     let square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-    let angle = square.sqrt();
+    let angle = (square + T::TINY_SQUARE).sqrt();
     let (sine, cosine) = angle.sin_cos();
-    let factor = if square < T::TINY_SQUARE { T::ONE } else { sine / angle };
+    let factor = sine / angle;
     [cosine, v[0] * factor, v[1] * factor, v[2] * factor]
 }
 

@@ -1,0 +1,109 @@
+"""What becomes of missing samples, the same for every filter.
+
+Gaps up to `max_gap` are filled along geodesics, and what was filled has confidence 0. Longer gaps stay missing: the
+clip is cut where one begins or ends, each span is filtered apart, with the joints that are there.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from quatfilt import _validation
+from quatfilt._backend import ops
+from quatfilt._typing import Array, Mask
+from quatfilt.filters.gaps import gap_frames
+
+Gaps: TypeAlias = Literal["fill", "keep", "raise"]
+"""What becomes of missing samples: filled, left missing, or refused."""
+
+GAPS: tuple[Gaps, ...] = ("fill", "keep", "raise")
+
+
+@dataclass(frozen=True)
+class Span:
+    """Frames of a clip in which the same joints are there."""
+
+    frames: slice
+    joints: NDArray[np.intp]
+
+
+@dataclass(frozen=True)
+class Clip:
+    """A checked clip, its gaps filled, and what is to be said of the result."""
+
+    rotations: Array
+    """``(frames, joints, 4)``; NaN only in gaps longer than `max_gap`."""
+    confidence: Array | None
+    """``(frames, joints)``; 0 where samples were filled in."""
+    missing: Mask
+    spans: tuple[Span, ...]
+    gaps: Gaps
+    shape: tuple[int, ...]
+    scalar_first: bool
+
+    @property
+    def unchanged(self) -> bool:
+        """Whether the clip is too short to be filtered."""
+        return len(self.rotations) < 2 or self.rotations.size == 0
+
+    def finish(self, rotations: Array) -> Array:
+        """Return a result in the shape and order of the input, with gaps kept if that was asked for."""
+        if self.gaps == "keep" and not self.unchanged:
+            rotations[self.missing] = np.nan
+        return _validation.scalar_order(rotations.reshape(self.shape), scalar_first=self.scalar_first)
+
+    def filter(self, run: Callable[[Array, Array | None, Span], Array]) -> Array:
+        """Run a filter over each span, ``(rotations, confidence, span) -> rotations``, and finish."""
+        if self.unchanged:
+            return self.finish(self.rotations.copy())
+        if len(self.spans) == 1 and len(self.spans[0].joints) == self.rotations.shape[1]:
+            return self.finish(run(self.rotations, self.confidence, self.spans[0]))
+        result = np.full_like(self.rotations, np.nan)
+        for span in self.spans:
+            part = np.ascontiguousarray(self.rotations[span.frames, span.joints])
+            trust = None if self.confidence is None else self.confidence[span.frames, span.joints]
+            filtered = run(part, None if trust is None else np.ascontiguousarray(trust), span)
+            result[span.frames, span.joints] = filtered
+        return self.finish(result)
+
+
+def prepare(
+    q: ArrayLike,
+    *,
+    gaps: Gaps,
+    max_gap: float | None,
+    fps: float,
+    confidence: ArrayLike | None,
+    scalar_first: bool,
+) -> Clip:
+    """Check a clip and its options, and fill its gaps."""
+    array = _validation.quaternions(q, "rotations", scalar_first=scalar_first)
+    rotations, count = _validation.clip(array)
+    frames, joints = rotations.shape[:2]
+    policy = _validation.choice(gaps, "gaps", GAPS)
+    longest = gap_frames(max_gap, fps, frames)
+    trust = _validation.confidence(confidence, frames, joints, rotations.dtype)
+    missing = np.zeros((frames, joints), dtype=np.bool_)
+    spans: tuple[Span, ...] = (Span(slice(0, frames), np.arange(joints)),)
+    if count and policy == "raise":
+        raise ValueError(f"rotations: expected no missing samples with gaps='raise', got {count}")
+    if count and frames > 1:
+        missing = ~np.isfinite(rotations).all(axis=-1) | (rotations == 0).all(axis=-1)
+        rotations, _ = ops().fill_gaps(rotations, longest)
+        trust = np.where(missing, 0, 1 if trust is None else trust).astype(rotations.dtype)
+        spans = _spans(np.isnan(rotations[..., 0]))
+    return Clip(rotations, trust, missing, spans, policy, array.shape, scalar_first)
+
+
+def _spans(missing: Mask) -> tuple[Span, ...]:
+    """Cut the clip wherever a joint comes or goes."""
+    changes = 1 + np.flatnonzero((missing[1:] != missing[:-1]).any(axis=1))
+    borders = [0, *changes.tolist(), len(missing)]
+    spans = (
+        Span(slice(start, end), np.flatnonzero(~missing[start]))
+        for start, end in zip(borders[:-1], borders[1:], strict=True)
+    )
+    return tuple(span for span in spans if len(span.joints))

@@ -1,0 +1,216 @@
+"""Non-local pose means."""
+
+from collections.abc import Sequence
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from quatfilt import _validation
+from quatfilt._backend import ops
+from quatfilt._typing import Array
+from quatfilt.filters import _spans
+
+Chart = Literal["mean", "identity", "local"]
+Boundary = Literal["nearest", "mirror", "linear"]
+Weights = Literal["pose", "joint"]
+Distance = Literal["mean", "sum"]
+
+_CHARTS: tuple[Chart, ...] = ("mean", "identity", "local")
+_BOUNDARIES: tuple[Boundary, ...] = ("nearest", "mirror", "linear")
+_WEIGHTS: tuple[Weights, ...] = ("pose", "joint")
+_DISTANCES: tuple[Distance, ...] = ("mean", "sum")
+
+_WHOLE_CLIP = _ALL = _NO_LIMIT = -1
+
+_NOISE_TO_BANDWIDTH = 1.0
+"""The automatic bandwidth in units of the estimated noise."""
+
+_LEAST_BANDWIDTH = 1e-9
+"""Radians: the automatic bandwidth of a joint without noise, whose frames then come back as they are."""
+
+
+def nonlocal_pose_means(
+    q: ArrayLike,
+    *,
+    search_radius: int | None = 10,
+    patch_radius: int = 5,
+    bandwidth: float | ArrayLike | Literal["auto"] = "auto",
+    distance: Distance = "mean",
+    weights: Weights = "pose",
+    neighbors: int | None = None,
+    library: Sequence[ArrayLike] | None = None,
+    chart: Chart = "mean",
+    boundary: Boundary = "nearest",
+    lookahead: int | None = None,
+    confidence: ArrayLike | None = None,
+    gaps: _spans.Gaps = "fill",
+    max_gap: float | None = None,
+    fps: float = 1.0,
+    scalar_first: bool = True,
+) -> Array:
+    """Denoise by averaging poses whose neighbourhoods in time look alike.
+
+    With the poses `x_t` as rotation vectors in a chart, the patches ``P_t = (x_{t-r}, …, x_{t+r})`` of
+    ``2·patch_radius + 1`` frames, and the learning window ``|s − t| ≤ search_radius``::
+
+        f(t, s) = exp(−‖P_s − P_t‖² / (2·bandwidth²))        s ≠ t
+        f(t, t) = max(max_s f(t, s), exp(−80))
+        x̂_t     = Σ_s f(t, s)·x_s / Σ_s f(t, s)
+
+    where ``‖·‖²`` is the mean square over the patch's frames and coordinates. What repeats is averaged over its
+    repetitions, and what happens once, such as the impact of a foot, is left alone.
+
+    Parameters
+    ----------
+    q : array_like, shape (frames, joints, 4) or (frames, 4)
+        Unit quaternions along time. NaN or four zeros are missing samples.
+    search_radius : int or None, frames, default 10
+        Radius of the learning window; None for the whole clip, at a cost that grows with the square of its length.
+    patch_radius : int, frames, default 5
+        Radius of a patch.
+    bandwidth : float or array_like (joints,), radians of rotation per coordinate, or "auto", default "auto"
+        How unlike patches may be. Twice the paper's σ. "auto" takes the noise that `noise_level` estimates: for
+        ``weights="pose"`` its root mean square over the joints.
+    distance : {"mean", "sum"}, default "mean"
+        ``"sum"`` is the printed equation, whose bandwidth depends on the patch and on the number of joints.
+    weights : {"pose", "joint"}, default "pose"
+        One weight per pose, as in the paper; or per joint, so that each joint finds its own repetitions.
+    neighbors : int or None, default None
+        Only so many most similar patches of the window count; None for all.
+    library : None
+        Other clips to borrow patches from: not in this version.
+    chart : {"mean", "local", "identity"}, default "mean"
+        Where rotations become vectors. ``"mean"``: along the sign-continuous path, at each joint's Karcher mean;
+        joints that turn farther than three quarters of a turn from it use ``"local"``. ``"local"``: each pair of
+        frames at one of them; the most faithful, and three times slower. ``"identity"``: the paper's; breaks down
+        far from the identity.
+    boundary : {"nearest", "mirror", "linear"}, default "nearest"
+        How the clip goes on beyond its ends: the end pose is held; time turns round; the angular velocity is held.
+    lookahead : int or None, frames, default None
+        If given, the window and patches touch no frame later than this one plus `lookahead`.
+    confidence : array_like or None, shape (frames,) or (frames, joints), 0…1, default None
+        How far each sample counts, in patch distances and in means. Missing samples have 0.
+    gaps : {"fill", "keep", "raise"}, default "fill"
+        What becomes of missing samples. ``"keep"``: they stay missing, and do not disturb the others.
+    max_gap : float or None, seconds, default None
+        The longest gap that is filled; None for any. Longer ones stay missing, and their sides are filtered apart.
+    fps : float, hertz, default 1.0
+        Frame rate, for `max_gap`; without it `max_gap` counts frames.
+    scalar_first : bool, default True
+        Whether quaternions are ``(w, x, y, z)``; False for SciPy's ``(x, y, z, w)``.
+
+    Returns
+    -------
+    ndarray, shape of `q`
+        Unit quaternions, continuous in sign from the hemisphere of the first frame on.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If an argument has another shape, type or range than stated; the message names it.
+
+    Notes
+    -----
+    Cost: ``frames · joints · search_radius``, whatever the patch: along one lag the patch distance is a sliding sum,
+    and a lag serves both of its signs. Memory beyond the result: one byte per sample and some hundred kB per thread.
+
+    Rule of thumb: leave the bandwidth "auto". Below the noise the filter does nothing; at several times the noise it
+    becomes a moving mean, which flattens fast motion. Not for gaps wider than the window, nor for single-frame spikes.
+
+    A neighbour that is as near as another within rounding may replace it when `neighbors` is given.
+
+    References
+    ----------
+    .. [1] C. J. Dean and J. P. Lewis, "Non-local pose means for denoising motion capture data".
+    .. [2] A. Buades, B. Coll and J.-M. Morel, "A non-local algorithm for image denoising", CVPR 2005.
+
+    Examples
+    --------
+    >>> import numpy as np, quatfilt as qf
+    >>> t = np.arange(240) / 120
+    >>> swing = qf.exp(0.4 * np.sin(2 * np.pi * t)[:, None] * [0.0, 0.0, 1.0])
+    >>> noisy = qf.add_gaussian_noise(swing, sigma=np.radians(2), rng=0)
+    >>> clean = qf.nonlocal_pose_means(noisy)
+    >>> error = lambda q: float(np.degrees(qf.geodesic_distance(swing, q)).mean())
+    >>> error(clean) < 0.7 * error(noisy)
+    True
+    """
+    clip = _spans.prepare(
+        q, gaps=gaps, max_gap=max_gap, fps=fps, confidence=confidence, scalar_first=scalar_first
+    )
+    options = checked_options(
+        search_radius=search_radius,
+        patch_radius=patch_radius,
+        bandwidth=bandwidth,
+        distance=distance,
+        weights=weights,
+        neighbors=neighbors,
+        library=library,
+        chart=chart,
+        boundary=boundary,
+        lookahead=lookahead,
+    )
+    bandwidths = joint_bandwidths(clip, bandwidth, weights)
+
+    def run(rotations: Array, trust: Array | None, span: _spans.Span) -> Array:
+        result: Array = ops().nonlocal_pose_means(rotations, None, trust, bandwidths[span.joints], *options)[
+            0
+        ]
+        return result
+
+    return clip.filter(run)
+
+
+def checked_options(
+    *,
+    search_radius: int | None,
+    patch_radius: int,
+    bandwidth: float | ArrayLike | Literal["auto"],
+    distance: Distance,
+    weights: Weights,
+    neighbors: int | None,
+    library: Sequence[ArrayLike] | None,
+    chart: Chart,
+    boundary: Boundary,
+    lookahead: int | None,
+) -> tuple[Any, ...]:
+    """Return the options after the bandwidth as the backends take them."""
+    if isinstance(bandwidth, str):
+        _validation.choice(bandwidth, "bandwidth", ("auto",))
+    if library is not None:
+        raise ValueError("library: expected None; patches of other clips are not searched in this version")
+    return (
+        _WHOLE_CLIP
+        if search_radius is None
+        else _validation.integer(search_radius, "search_radius", at_least=1),
+        _validation.integer(patch_radius, "patch_radius", at_least=0),
+        _validation.choice(distance, "distance", _DISTANCES),
+        _validation.choice(weights, "weights", _WEIGHTS),
+        _ALL if neighbors is None else _validation.integer(neighbors, "neighbors", at_least=1),
+        _validation.choice(chart, "chart", _CHARTS),
+        _validation.choice(boundary, "boundary", _BOUNDARIES),
+        _NO_LIMIT if lookahead is None else _validation.integer(lookahead, "lookahead", at_least=0),
+    )
+
+
+def joint_bandwidths(
+    clip: _spans.Clip, bandwidth: float | ArrayLike | Literal["auto"], weights: Weights
+) -> NDArray[np.float64]:
+    """Return the bandwidth of each joint."""
+    joints = clip.rotations.shape[1]
+    if not isinstance(bandwidth, str):
+        return _validation.per_joint(bandwidth, "bandwidth", joints, above=0)
+    if clip.unchanged:
+        return np.full(joints, _LEAST_BANDWIDTH)
+    measured = clip.rotations
+    if clip.missing.any():
+        measured = measured.copy()
+        measured[clip.missing] = np.nan
+    noise: NDArray[np.float64] = ops().noise_level(measured).astype(np.float64)
+    if weights == "pose":
+        noise = np.full(joints, np.sqrt(np.mean(noise**2)))
+    return np.maximum(_NOISE_TO_BANDWIDTH * noise, _LEAST_BANDWIDTH)
+
+
+__all__ = ["Boundary", "Chart", "Distance", "Weights", "nonlocal_pose_means"]
