@@ -8,6 +8,7 @@ import warnings
 
 from quatfilt._backend import get_backend, get_num_threads, set_num_threads, simd_level, use_backend
 from quatfilt._core import is_debug_build as _is_debug_build
+from quatfilt.denoise import denoise
 from quatfilt.errors import FileAccessError, FileFormatError, QuatfiltError
 from quatfilt.filters.gaps import fill_gaps
 from quatfilt.filters.nonlocal_pose_means import nonlocal_pose_means
@@ -38,6 +39,7 @@ __all__ = [
     "add_impulse_noise",
     "conjugate",
     "continuous",
+    "denoise",
     "exp",
     "fill_gaps",
     "geodesic_distance",

@@ -4,19 +4,19 @@ import numpy as np
 import quatfilt as qf
 
 NOT_KERNELS = {
-    "EndSite": "holds what it is given",
-    "FileAccessError": "is an error",
-    "FileFormatError": "is an error",
-    "Motion": "holds what it is given",
-    "QuatfiltError": "is an error",
-    "Skeleton": "holds what it is given",
+    "EndSite": "a part of a skeleton",
+    "FileAccessError": "an error",
+    "FileFormatError": "an error",
+    "Motion": "a class",
+    "QuatfiltError": "an error",
+    "Skeleton": "a class",
+    "read_motion": "takes a file",
+    "write_motion": "takes a file",
     "get_backend": "asks who computes",
     "get_num_threads": "asks for the number of threads",
-    "read_motion": "reads a file",
     "set_num_threads": "sets the number of threads",
     "simd_level": "asks for the vector instructions",
     "use_backend": "chooses who computes",
-    "write_motion": "writes a file",
 }
 """Public names that no array goes through, and why."""
 
@@ -49,12 +49,15 @@ CALLS = {
     "add_impulse_noise": lambda a, _b, _v: qf.add_impulse_noise(a, probability=0.1, rng=1),
     "conjugate": lambda a, _b, _v: qf.conjugate(a),
     "continuous": lambda a, _b, _v: qf.continuous(with_gaps(a)),
+    "denoise": lambda a, _b, _v: qf.denoise(with_gaps(a)),
     "exp": lambda _a, _b, v: qf.exp(v),
     "fill_gaps": lambda a, _b, _v: qf.fill_gaps(with_gaps(a))[0],
     "geodesic_distance": lambda a, b, _v: qf.geodesic_distance(a, b),
     "log": lambda a, _b, _v: qf.log(a),
+    "mean": lambda a, _b, _v: qf.mean(with_gaps(a)),
     "multiply": lambda a, b, _v: qf.multiply(a, b),
     "noise_level": lambda a, _b, _v: qf.noise_level(with_gaps(a)),
+    "nonlocal_pose_means": lambda a, _b, _v: qf.nonlocal_pose_means(with_gaps(a), bandwidth=1.0),
     "normalize": lambda a, _b, _v: qf.normalize(2 * a),
     "resample": lambda a, _b, _v: qf.resample(a, fps=30, new_fps=31.7),
     "slerp": lambda a, _b, _v: qf.slerp(a, np.arange(FRAMES), np.linspace(0, FRAMES - 1, 10_001)),

@@ -4,6 +4,7 @@ Gaps up to `max_gap` are filled along geodesics, and what was filled has confide
 clip is cut where one begins or ends, each span is filtered apart, with the joints that are there.
 """
 
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
@@ -103,7 +104,6 @@ def _spans(missing: Mask) -> tuple[Span, ...]:
     changes = 1 + np.flatnonzero((missing[1:] != missing[:-1]).any(axis=1))
     borders = [0, *changes.tolist(), len(missing)]
     spans = (
-        Span(slice(start, end), np.flatnonzero(~missing[start]))
-        for start, end in zip(borders[:-1], borders[1:], strict=True)
+        Span(slice(start, end), np.flatnonzero(~missing[start])) for start, end in itertools.pairwise(borders)
     )
     return tuple(span for span in spans if len(span.joints))

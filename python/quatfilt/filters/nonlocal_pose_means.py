@@ -1,7 +1,7 @@
 """Non-local pose means."""
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -136,10 +136,9 @@ def nonlocal_pose_means(
     >>> error(clean) < 0.7 * error(noisy)
     True
     """
-    clip = _spans.prepare(
-        q, gaps=gaps, max_gap=max_gap, fps=fps, confidence=confidence, scalar_first=scalar_first
-    )
-    options = checked_options(
+    return with_translation(
+        q,
+        None,
         search_radius=search_radius,
         patch_radius=patch_radius,
         bandwidth=bandwidth,
@@ -150,19 +149,46 @@ def nonlocal_pose_means(
         chart=chart,
         boundary=boundary,
         lookahead=lookahead,
+        confidence=confidence,
+        gaps=gaps,
+        max_gap=max_gap,
+        fps=fps,
+        scalar_first=scalar_first,
+    )[0]
+
+
+def with_translation(
+    q: ArrayLike,
+    translation: Array | None,
+    *,
+    bandwidth: float | ArrayLike | Literal["auto"],
+    confidence: ArrayLike | None,
+    gaps: _spans.Gaps,
+    max_gap: float | None,
+    fps: float,
+    scalar_first: bool,
+    **window: Any,
+) -> tuple[Array, Array | None]:
+    """Filter as `nonlocal_pose_means` does, and a translation ``(frames, 3)`` with the root's weights."""
+    clip = _spans.prepare(
+        q, gaps=gaps, max_gap=max_gap, fps=fps, confidence=confidence, scalar_first=scalar_first
     )
-    bandwidths = joint_bandwidths(clip, bandwidth, weights)
+    options = _checked(bandwidth=bandwidth, **window)
+    bandwidths = _joint_bandwidths(clip, bandwidth, window["weights"])
+    moved = None if translation is None else translation.astype(clip.rotations.dtype)
 
     def run(rotations: Array, trust: Array | None, span: _spans.Span) -> Array:
-        result: Array = ops().nonlocal_pose_means(rotations, None, trust, bandwidths[span.joints], *options)[
-            0
-        ]
-        return result
+        # Without the root there are no weights for its translation.
+        part = moved[span.frames] if moved is not None and 0 in span.joints else None
+        result, along = ops().nonlocal_pose_means(rotations, part, trust, bandwidths[span.joints], *options)
+        if moved is not None and along is not None:
+            moved[span.frames] = along
+        return cast("Array", result)
 
-    return clip.filter(run)
+    return clip.filter(run), moved
 
 
-def checked_options(
+def _checked(
     *,
     search_radius: int | None,
     patch_radius: int,
@@ -194,7 +220,7 @@ def checked_options(
     )
 
 
-def joint_bandwidths(
+def _joint_bandwidths(
     clip: _spans.Clip, bandwidth: float | ArrayLike | Literal["auto"], weights: Weights
 ) -> NDArray[np.float64]:
     """Return the bandwidth of each joint."""
@@ -213,4 +239,4 @@ def joint_bandwidths(
     return np.maximum(_NOISE_TO_BANDWIDTH * noise, _LEAST_BANDWIDTH)
 
 
-__all__ = ["Boundary", "Chart", "Distance", "Weights", "nonlocal_pose_means"]
+__all__ = ["Boundary", "Chart", "Distance", "Weights", "nonlocal_pose_means", "with_translation"]

@@ -166,7 +166,7 @@ def _write_curves(
 
 def rounded(values: Array, original: Array | None) -> Values:
     """Return positions as they are written: the original's numbers where they are the same, others rounded."""
-    result: Values = np.round(values.astype(np.float64), _ROUNDED).astype(np.float64, copy=False)
+    result: Values = np.round(values.astype(np.float64), _ROUNDED).astype(np.float64)
     if original is None:
         return result
     same = (values == original.astype(values.dtype)) | (np.isnan(values) & np.isnan(original))

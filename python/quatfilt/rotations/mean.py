@@ -1,7 +1,5 @@
 """Karcher mean of rotations."""
 
-from typing import cast
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -74,7 +72,7 @@ def mean(
         share = np.moveaxis(given, along, 0).reshape(clip.shape[:2])
         share = np.require(share, clip.dtype, ("C_CONTIGUOUS", "ALIGNED"))
     result = ops().mean(clip, share).reshape(moved.shape[1:])
-    return cast("Array", _validation.scalar_order(result, scalar_first=scalar_first))
+    return _validation.scalar_order(result, scalar_first=scalar_first)
 
 
 __all__ = ["mean"]

@@ -130,7 +130,7 @@ pub(crate) fn run_interruptible<R: Send>(
             });
             while let Err(RecvTimeoutError::Timeout) = finished.recv_timeout(POLL) {
                 if signal.is_ok() {
-                    signal = Python::attach(|py| py.check_signals());
+                    signal = Python::attach(|py: Python<'_>| py.check_signals());
                     if signal.is_err() {
                         interrupt.set();
                     }

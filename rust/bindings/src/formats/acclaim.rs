@@ -63,6 +63,9 @@ pub(crate) fn read_asf<'py>(py: Python<'py>, data: &Bound<'py, PyBytes>) -> PyRe
     Ok(result)
 }
 
+/// Values, the unit of their angles, notes.
+type Table<'py> = (Bound<'py, PyArray2<f64>>, &'static str, Vec<String>);
+
 /// Reads an AMC motion of the skeleton of an ASF file: values `(frames, columns)`, the unit of their angles, notes.
 #[pyfunction]
 #[pyo3(signature = (data, skeleton, /))]
@@ -70,7 +73,7 @@ pub(crate) fn read_amc<'py>(
     py: Python<'py>,
     data: &Bound<'py, PyBytes>,
     skeleton: &Bound<'py, PyBytes>,
-) -> PyResult<(Bound<'py, PyArray2<f64>>, &'static str, Vec<String>)> {
+) -> PyResult<Table<'py>> {
     let (data, skeleton) = (data.as_bytes(), skeleton.as_bytes());
     let (motion, columns) = run(py, || {
         let skeleton = acclaim::parse_asf(skeleton)?;

@@ -1,0 +1,103 @@
+"""The way from a noisy clip or motion to a clean one that the command line runs."""
+
+from typing import Any, cast, overload
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from quatfilt import _validation
+from quatfilt._typing import Array, Mask
+from quatfilt.filters import nonlocal_pose_means
+from quatfilt.motion.motion import Motion
+
+METHODS = ("auto", "nonlocal_pose_means")
+"""What `denoise` can run; "auto" is the best that this version has."""
+
+
+@overload
+def denoise(
+    motion_or_rotations: Motion, *, method: str = "auto", translation: bool = True, **options: Any
+) -> Motion: ...
+@overload
+def denoise(
+    motion_or_rotations: ArrayLike, *, method: str = "auto", translation: bool = True, **options: Any
+) -> Array: ...
+def denoise(
+    motion_or_rotations: Motion | ArrayLike,
+    *,
+    method: str = "auto",
+    translation: bool = True,
+    **options: Any,
+) -> Motion | Array:
+    """Denoise a motion, or a clip of rotations.
+
+    Parameters
+    ----------
+    motion_or_rotations : Motion or array_like, shape (frames, joints, 4) or (frames, 4)
+        What to clean. Missing samples are filled in, unless ``gaps=`` says otherwise.
+    method : {"auto", "nonlocal_pose_means"}, default "auto"
+        The filter. "auto" is `nonlocal_pose_means` with a bandwidth from the estimated noise.
+    translation : bool, default True
+        Whether a motion's root translation is filtered too, with the weights of its poses; gaps in it are then filled
+        along straight lines.
+    **options
+        Options of the filter. A motion knows its frame rate: ``fps`` need not be given.
+
+    Returns
+    -------
+    Motion or ndarray
+        Like the input, which is not changed.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If the method or one of its options is not what was stated; the message names it.
+
+    See Also
+    --------
+    nonlocal_pose_means : The filter, its options and its cost.
+
+    Examples
+    --------
+    >>> import numpy as np, quatfilt as qf
+    >>> t = np.arange(240) / 120
+    >>> swing = qf.exp(0.4 * np.sin(2 * np.pi * t)[:, None] * [0.0, 0.0, 1.0])
+    >>> noisy = qf.add_gaussian_noise(swing, sigma=0.03, rng=0)
+    >>> qf.denoise(noisy).shape
+    (240, 4)
+    """
+    _validation.choice(method, "method", METHODS)
+    if not isinstance(translation, (bool, np.bool_)):
+        raise TypeError(f"translation: expected True or False, got {type(translation).__name__}")
+    defaults = cast("dict[str, Any]", nonlocal_pose_means.nonlocal_pose_means.__kwdefaults__)
+    unknown = [name for name in options if name not in defaults]
+    if unknown:
+        raise TypeError(
+            f"{unknown[0]}: expected an option of nonlocal_pose_means ({', '.join(defaults)}), got this name"
+        )
+    if not isinstance(motion_or_rotations, Motion):
+        return nonlocal_pose_means.nonlocal_pose_means(motion_or_rotations, **options)
+    motion = motion_or_rotations
+    chosen = {**defaults, "fps": motion.fps, **options}
+    missing: Mask = np.asarray(np.isnan(motion.translation).any(axis=1))
+    moved = _straightened(motion.translation, missing) if translation else None
+    rotations, moved = nonlocal_pose_means.with_translation(motion.rotations, moved, **chosen)
+    if moved is None:
+        return motion.replace(rotations=rotations)
+    if chosen["gaps"] == "keep":
+        moved[missing] = np.nan
+    return motion.replace(rotations=rotations, translation=moved)
+
+
+def _straightened(translation: Array, missing: Mask) -> Array | None:
+    """Return a translation with its gaps filled along straight lines; None where all of it is missing."""
+    if missing.all():
+        return None
+    if not missing.any():
+        return translation
+    frames = np.arange(len(translation))
+    columns = [np.interp(frames, frames[~missing], column[~missing]) for column in translation.T]
+    return np.stack(columns, axis=1).astype(translation.dtype)
+
+
+__all__ = ["METHODS", "denoise"]
