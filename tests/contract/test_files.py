@@ -212,7 +212,11 @@ def test_motions(motion):
         ({"rotations": motion.rotations[:, :1]}, "rotations: expected 2 joints as in the skeleton, got 1"),
         ({"rotations": motion.rotations[:2]}, "translation: expected shape (2, 3), got (3, 3)"),
         (
-            {"rotations": 2 * motion.rotations},
+            {
+                "rotations": motion.rotations
+                * np.array([1, 2, 1])[:, None, None]
+                * np.array([1, 0.5])[:, None]
+            },
             "rotations: expected unit quaternions, got norm 2 at frame 1, joint 0",
         ),
         ({"joint_translations": [1.0]}, "joint_translations: expected shape (3, 2, 3), got (1,)"),
