@@ -7,27 +7,12 @@ import pytest
 import tolerances
 from hypothesis import given
 from hypothesis import strategies as st
+from nlpm import options
 
 seeds = st.integers(0, 2**32 - 1)
 charts = st.sampled_from(["mean", "identity", "local"])
 equivariant_charts = st.sampled_from(["mean", "local"])
 dtypes = st.sampled_from([np.float32, np.float64])
-
-
-def options(*, neighbors=True, search_radius=(-1, 0, 1, 4, 30), lookahead=True):
-    """Everything but the chart."""
-    return st.fixed_dictionaries(
-        {
-            "search_radius": st.sampled_from(search_radius),
-            "patch_radius": st.integers(0, 3),
-            "distance": st.sampled_from(["mean", "sum"]),
-            "weights": st.sampled_from(["pose", "joint"]),
-            "neighbors": st.sampled_from([-1, 1, 3]) if neighbors else st.just(-1),
-            "boundary": st.sampled_from(["mirror", "linear", "nearest"]),
-            "lookahead": st.sampled_from([-1, 0, 2, 5]) if lookahead else st.just(-1),
-            "bandwidth": st.sampled_from([0.02, 0.1, 1.0]),
-        }
-    )
 
 
 without_ties = options(neighbors=False)
