@@ -31,7 +31,7 @@ use crate::error::check_length;
 use crate::parallel::{self, Interrupt};
 use crate::rotations::quaternion;
 use crate::window::{Boundary, Extended};
-use crate::{ClipView, Error, Real};
+use crate::{ClipMut, ClipView, Error, Real};
 use path::Paths;
 use std::sync::Mutex;
 use tile::{Buffers, Clip, Tile};
@@ -140,10 +140,11 @@ impl NonlocalPoseMeans {
         clip: ClipView<'_, T>,
         confidence: Option<&[T]>,
         translation: Option<Translation<'_, T>>,
-        out: &mut [T],
+        out: ClipMut<'_, T>,
         interrupt: &Interrupt,
     ) -> Result<(), Error> {
         let (frames, joints) = (clip.frames(), clip.joints());
+        let out = out.into_data();
         check_length("out", clip.data().len(), out.len())?;
         check_length("bandwidth", joints, self.bandwidth.len())?;
         if let Some(confidence) = confidence {
