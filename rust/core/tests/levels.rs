@@ -69,7 +69,13 @@ fn filters<T: Real>() -> Result<Vec<(&'static str, Vec<T>)>, Error> {
                 lookahead: None,
             };
             let mut out = vec![T::ZERO; q.len()];
-            filter.filter(view, None, None, ClipMut::new(&mut out, view.frames(), view.joints())?, &interrupt)?;
+            filter.filter(
+                view,
+                None,
+                None,
+                ClipMut::new(&mut out, view.frames(), view.joints())?,
+                &interrupt,
+            )?;
             results.push((name, out));
         }
     }

@@ -1,6 +1,6 @@
 //! The weighted means of a tile: sums per joint, settled group by group.
 
-use super::kernels::{self, LANE, SHIFT};
+use super::kernels::{self, LANE, Lags, SHIFT};
 use super::likeness::Likeness;
 use super::path::JointChart;
 use super::tile::{Piece, Tile};
@@ -115,28 +115,22 @@ impl<'a, T: Real> Means<'a, T> {
             .collect()
     }
 
-    /// Adds the samples of a block of lags from `lag`, for fixed charts and the translation.
-    pub(super) fn add_block(&mut self, lag: usize, lags: usize, forward: &Planes<T>, backward: &Planes<T>) {
-        let at = self.tile.at;
+    /// Adds the samples of a block of lags, for fixed charts and the translation.
+    pub(super) fn add_block(
+        &mut self,
+        first: usize,
+        count: usize,
+        forward: &Planes<T>,
+        backward: &Planes<T>,
+    ) {
+        let block = Lags { at: self.tile.at, first, count, forward, backward, fresh: self.fresh };
         for (index, planes) in self.fixed() {
             let row = index * PER_JOINT;
             match &self.trusted {
-                None => {
-                    kernels::accumulate(
-                        self.sums.rows_mut::<3>(row),
-                        planes,
-                        at,
-                        lag,
-                        lags,
-                        forward,
-                        backward,
-                        self.fresh,
-                    );
-                }
+                None => kernels::accumulate(self.sums.rows_mut::<3>(row), planes, &block),
                 Some(trusted) => {
                     let planes = trusted.rows_from::<PER_JOINT>(row);
-                    let sums = self.sums.rows_mut::<PER_JOINT>(row);
-                    kernels::accumulate(sums, planes, at, lag, lags, forward, backward, self.fresh);
+                    kernels::accumulate(self.sums.rows_mut::<PER_JOINT>(row), planes, &block);
                 }
             }
         }

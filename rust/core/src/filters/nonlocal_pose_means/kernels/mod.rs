@@ -9,7 +9,7 @@ pub(super) use distances::{
     multiply_planes, pair_logs, sliding_sums, weigh,
 };
 pub(super) use samples::{copy_signed, load_fixed, load_local, store_fixed, store_local, turns};
-pub(super) use sums::{accumulate, add_products, note_weights, settle, settle_local};
+pub(super) use sums::{Lags, accumulate, add_products, note_weights, settle, settle_local};
 
 /// Frames that a loop over lags keeps at hand: four vectors of float32 at the widest level.
 pub(super) const LANE: usize = 64;

@@ -28,21 +28,36 @@ multiversion! {
     }
 }
 
+/// The weights of a block of lags.
+pub(in super::super) struct Lags<'a, T> {
+    /// Where the first frame of the tile stands in the planes.
+    pub(in super::super) at: usize,
+    /// The first lag.
+    pub(in super::super) first: usize,
+    /// How many lags.
+    pub(in super::super) count: usize,
+    /// Weights of later samples, a row per lag.
+    pub(in super::super) forward: &'a Planes<T>,
+    /// Weights of earlier samples, a row per lag.
+    pub(in super::super) backward: &'a Planes<T>,
+    /// Whether the sums begin with this block.
+    pub(in super::super) fresh: bool,
+}
+
 multiversion! {
-    /// Adds, for each lag of a block, the weighted later and earlier samples of `N` planes; `fresh` sums begin with them.
+    /// Adds, for each lag of a block, the weighted later and earlier samples of `N` planes.
     ///
-    /// `forward` and `backward` hold a row of weights per lag, the first for the lag `lag`; frame `i` of the tile stands at
-    /// `at + i` in the planes. Samples outside of the planes must have weight 0.
+    /// Samples outside of the planes must have weight 0.
     pub(in super::super) fn accumulate<T: Real, const N: usize>(
-        sums: [&mut [T]; N], planes: [&[T]; N], at: usize, lag: usize, lags: usize,
-        forward: &Planes<T>, backward: &Planes<T>, fresh: bool,
+        sums: [&mut [T]; N], planes: [&[T]; N], block: &Lags<'_, T>,
     ) {
+        let Lags { at, first, count, forward, backward, fresh } = *block;
         let mut sums = sums;
         let length = planes[0].len();
         for start in (0..sums[0].len()).step_by(LANE) {
             let mut lane = [[T::ZERO; LANE]; N];
-            for l in 0..lags {
-                let shift = lag + l;
+            for l in 0..count {
+                let shift = first + l;
                 let f = &forward.row(l)[start..start + LANE];
                 let b = &backward.row(l)[start..start + LANE];
                 let later = at + start + shift;
