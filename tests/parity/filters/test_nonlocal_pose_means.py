@@ -43,9 +43,7 @@ def clear(q, options):
     lags, future = causal_window(len(q), window, patch, chosen["lookahead"])
     bandwidth = np.broadcast_to(chosen["bandwidth"], q.shape[1]).astype(np.float64)
     how = Comparison(lags, window < 0, patch, future, bandwidth, chosen["distance"] == "mean", joint_wise)
-    clip = extend(
-        q, None, chosen["confidence"], max(window, 0) + patch, chosen["boundary"], chosen["chart"]
-    )
+    clip = extend(q, None, chosen["confidence"], max(window, 0) + patch, chosen["boundary"], chosen["chart"])
     distances = np.full((len(lags) + count + 1, len(q), q.shape[1] if joint_wise else 1), np.inf)
     for row, lag in zip(distances, lags, strict=False):
         row[frames_with_candidate(clip, how, lag)] = patch_distances(clip, how, lag)
@@ -115,7 +113,9 @@ def test_any_options(seed, frames, joints, dtype, chart, chosen, extras, turns):
 
 
 @pytest.mark.parametrize("dtype", DTYPES)
-@pytest.mark.parametrize(("joints", "lengths"), [(1, [2047, 2048, 2049]), (31, [319, 321, 575, 576, 577, 1153])])
+@pytest.mark.parametrize(
+    ("joints", "lengths"), [(1, [2047, 2048, 2049]), (31, [319, 321, 575, 576, 577, 1153])]
+)
 @pytest.mark.parametrize("chart", CHARTS)
 def test_around_the_ends_of_tiles(chart, joints, lengths, dtype):
     for frames in lengths:
@@ -154,7 +154,8 @@ def test_the_whole_clip(chart, neighbors, dtype):
 
 @pytest.mark.parametrize("dtype", DTYPES)
 @pytest.mark.parametrize(
-    ("chart", "turns"), [("identity", 0.7), *((c, t) for c in ("mean", "local") for t in (0.7, 0.9, 1.3, 5.0))]
+    ("chart", "turns"),
+    [("identity", 0.7), *((c, t) for c in ("mean", "local") for t in (0.7, 0.9, 1.3, 5.0))],
 )
 def test_turning_roots(chart, turns, dtype):
     rng = np.random.default_rng(8)

@@ -71,7 +71,7 @@ def test_functions_of_two_arrays(name, seed, rows, dtype):
 @pytest.mark.parametrize("name", ["exp", "log"])
 def test_small_angles_keep_their_digits(name, dtype):
     exponents = np.arange(np.log10(np.finfo(dtype).tiny) + 1, 0, 0.25)
-    vectors = 10**exponents[:, None] * np.array([0.6, 0, -0.8])
+    vectors = 10 ** exponents[:, None] * np.array([0.6, 0, -0.8])
     array = vectors if name == "exp" else np.concatenate([np.ones((len(vectors), 1)), vectors], axis=1)
     result, expected = both(name, array.astype(dtype))
     np.testing.assert_allclose(result[:, -3:], expected[:, -3:], rtol=tolerances.algebra(dtype), atol=0)
