@@ -84,7 +84,7 @@ def clip(value: Any, name: str = "rotations", *, scalar_first: bool = True) -> t
     missing, worst, index = _backend.ops().scan(array)
     if worst > _FAR_FROM_UNIT:
         frame, joint = divmod(index, array.shape[1])
-        norm = float(np.linalg.norm(array[frame, joint].astype(np.float64)))
+        norm = math.hypot(*array[frame, joint].tolist())
         raise ValueError(
             f"{name}: expected unit quaternions, got norm {norm:.6g} at frame {frame}, joint {joint}",
         )

@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from quatfilt import _core, _reference
 
-
 UNARY = {"conjugate": 4, "exp": 3, "log": 4, "normalize": 4}
 """Functions of one array, and the length of its rows."""
 
