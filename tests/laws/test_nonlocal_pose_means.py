@@ -235,7 +235,10 @@ def test_it_removes_noise(backend, chart):
 @pytest.mark.parametrize(
     ("distance", "moves"), [(1, True), (80, True), (119, True), (121, False), (300, False)]
 )
-def test_an_untrusted_frame_follows_others_however_faint_down_to_one_limit(backend, dtype, distance, moves):
+@pytest.mark.parametrize("neighbors", [-1, 1])
+def test_an_untrusted_frame_follows_others_however_faint_down_to_one_limit(
+    backend, dtype, distance, moves, neighbors
+):
     """In a steady turn, seen with its past alone, frame 3 has one candidate, frame 2, at a known patch distance."""
     step = 0.25
     q = clips.from_vectors(step * np.arange(6)[:, None, None] * np.array([0.6, 0.8, 0])).astype(dtype)
@@ -243,5 +246,7 @@ def test_an_untrusted_frame_follows_others_however_faint_down_to_one_limit(backe
     confidence[3] = 0
     chosen = {"search_radius": 1, "patch_radius": 1, "lookahead": 0, "distance": "sum", "chart": "local"}
     bandwidth = step / np.sqrt(2 * distance)
-    result = nlpm.rotations(backend, q, confidence=confidence, bandwidth=bandwidth, **chosen)
+    result = nlpm.rotations(
+        backend, q, confidence=confidence, bandwidth=bandwidth, neighbors=neighbors, **chosen
+    )
     assert clips.angles(result[3], q[2] if moves else q[3]) < tolerances.filtered(dtype)

@@ -23,6 +23,12 @@ _DISTANCES: tuple[Distance, ...] = ("mean", "sum")
 
 _WHOLE_CLIP = _ALL = _NO_LIMIT = -1
 
+_LONGEST_RADIUS = 100_000
+"""Frames: windows and patches beyond it would take memory for frames that no clip has."""
+
+_MOST = 1_000_000_000
+"""More neighbours, and a longer lookahead, than any window has."""
+
 _NOISE_TO_BANDWIDTH = {"pose": 1.0, "joint": 1.2}
 """The automatic bandwidth in units of the estimated noise: best on average over six clips and 1, 5 and 15 times the
 paper's noise. Distances of single joints scatter more, and want a little more room."""
@@ -70,9 +76,10 @@ def nonlocal_pose_means(
     q : array_like, shape (frames, joints, 4) or (frames, 4)
         Unit quaternions along time. NaN or four zeros are missing samples.
     search_radius : int or None, frames, default 10
-        Radius of the learning window; None for the whole clip, at a cost that grows with the square of its length.
+        Radius of the learning window, from 1 to 100,000; None for the whole clip, at a cost that grows with the square
+        of its length.
     patch_radius : int, frames, default 5
-        Radius of a patch.
+        Radius of a patch, from 0 to 100,000.
     bandwidth : float or array_like (joints,), radians of rotation per coordinate, or "auto", default "auto"
         How unlike patches may be. Twice the paper's σ. "auto" takes the noise that `noise_level` estimates, its root
         mean square over the joints; for ``weights="joint"`` 1.2 times each joint's own.
@@ -213,14 +220,16 @@ def _checked(
     return (
         _WHOLE_CLIP
         if search_radius is None
-        else _validation.integer(search_radius, "search_radius", at_least=1),
-        _validation.integer(patch_radius, "patch_radius", at_least=0),
+        else _validation.integer(search_radius, "search_radius", at_least=1, at_most=_LONGEST_RADIUS),
+        _validation.integer(patch_radius, "patch_radius", at_least=0, at_most=_LONGEST_RADIUS),
         _validation.choice(distance, "distance", _DISTANCES),
         _validation.choice(weights, "weights", _WEIGHTS),
-        _ALL if neighbors is None else _validation.integer(neighbors, "neighbors", at_least=1),
+        _ALL if neighbors is None else _validation.integer(neighbors, "neighbors", at_least=1, at_most=_MOST),
         _validation.choice(chart, "chart", _CHARTS),
         _validation.choice(boundary, "boundary", _BOUNDARIES),
-        _NO_LIMIT if lookahead is None else _validation.integer(lookahead, "lookahead", at_least=0),
+        _NO_LIMIT
+        if lookahead is None
+        else _validation.integer(lookahead, "lookahead", at_least=0, at_most=_MOST),
     )
 
 

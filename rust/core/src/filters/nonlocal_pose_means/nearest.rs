@@ -40,7 +40,7 @@ impl<T: Real> Nearest<T> {
 
     fn insert(&mut self, frame: usize, candidate: Candidate<T>) {
         let best = &mut self.best[frame];
-        if !candidate.exponent.is_finite() {
+        if !candidate.exponent.is_finite() || candidate.exponent > T::from_f64(FARTHEST) {
             return;
         }
         if best.len() == self.count {

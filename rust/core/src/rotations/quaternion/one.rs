@@ -56,17 +56,16 @@ pub fn unit<T: Real>(q: [T; 4]) -> [T; 4] {
 #[inline(always)]
 #[must_use]
 pub fn log_one<T: Real>(q: [T; 4]) -> [T; 3] {
-    // Near −1 the axis matters however short the vector is: its length is taken without underflow.
-    let largest = q[1].abs().max(q[2].abs().max(q[3].abs()));
-    let none = largest <= T::ZERO;
-    let scale = if none { T::ONE } else { largest };
-    let u = [q[1] / scale, q[2] / scale, q[3] / scale];
-    let sine = scale * (u[0] * u[0] + u[1] * u[1] + u[2] * u[2]).sqrt();
-    let angle = sine.atan2_nonnegative(q[0]);
-    let factor = angle / (if none { T::ONE } else { sine });
-    // Zeros of all four have no angle either; they count as −1.
-    let turn = if (q[0] <= T::ZERO) & (angle == T::ZERO) { T::PI } else { angle };
-    [if none { turn } else { q[1] * factor }, q[2] * factor, q[3] * factor]
+    let square = q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    // Not a sum: near −1 the result is `π·v/|v|`, which shows every digit of the length. NaN stays.
+    let sine = (if square < T::TINY_SQUARE { T::TINY_SQUARE } else { square }).sqrt();
+    let factor = sine.atan2_nonnegative(q[0]) / sine;
+    let opposite = (square < T::TINY_SQUARE) & (q[0] <= T::ZERO);
+    [
+        if opposite { T::PI } else { q[1] * factor },
+        if opposite { T::ZERO } else { q[2] * factor },
+        if opposite { T::ZERO } else { q[3] * factor },
+    ]
 }
 
 /// Quaternion logarithm of `q` or `−q`, whichever has `w ≥ 0`: half the rotation vector of the shorter way.
