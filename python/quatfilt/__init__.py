@@ -13,6 +13,7 @@ from quatfilt.errors import FileAccessError, FileFormatError, QuatfiltError
 from quatfilt.filters.gaps import fill_gaps
 from quatfilt.filters.nonlocal_pose_means import nonlocal_pose_means
 from quatfilt.formats.files import read_motion, write_motion
+from quatfilt.motion import metrics
 from quatfilt.motion.motion import Motion
 from quatfilt.motion.skeleton import EndSite, Skeleton
 from quatfilt.noise.noise import add_gaussian_noise, add_impulse_noise, noise_level
@@ -47,6 +48,7 @@ __all__ = [
     "get_num_threads",
     "log",
     "mean",
+    "metrics",
     "multiply",
     "noise_level",
     "nonlocal_pose_means",

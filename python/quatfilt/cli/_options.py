@@ -1,0 +1,52 @@
+"""Arguments and options that several verbs have."""
+
+from pathlib import Path
+from typing import Annotated, TypeAlias, cast
+
+import typer
+
+from quatfilt import _backend
+from quatfilt.formats.files import FirstFrame, read_motion
+from quatfilt.motion.motion import Motion
+
+Input: TypeAlias = Annotated[
+    Path,
+    typer.Argument(metavar="IN", help="Motion file: .bvh, .amc (with its .asf) or .npz.", show_default=False),
+]
+Fps: TypeAlias = Annotated[
+    float | None,
+    typer.Option("--fps", metavar="HZ", help="Frames per second, instead of what the file says."),
+]
+SkeletonFile: TypeAlias = Annotated[
+    Path | None,
+    typer.Option(
+        "--skeleton", metavar="ASF", help="Skeleton of an .amc file; by default the .asf beside it."
+    ),
+]
+FirstFrameChoice: TypeAlias = Annotated[
+    str,
+    typer.Option(
+        "--first-frame",
+        metavar="auto|keep|drop",
+        help="What becomes of a first row that is a rest pose; auto: it is not filtered, and written again.",
+    ),
+]
+Json: TypeAlias = Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")]
+Threads: TypeAlias = Annotated[
+    int | None,
+    typer.Option("--threads", metavar="N", help="How many threads compute; by default all processors."),
+]
+
+
+def read(path: Path, *, fps: float | None, skeleton: Path | None, first_frame: str) -> Motion:
+    """Read a motion; a skeleton is for those that need one."""
+    needed = skeleton if path.suffix.lower() == ".amc" else None
+    return read_motion(path, fps=fps, skeleton=needed, first_frame=cast("FirstFrame", first_frame))
+
+
+def use_threads(threads: int | None) -> None:
+    """Set the number of threads of the process."""
+    if threads is not None and threads < 1:
+        raise ValueError(f"--threads: expected at least 1, got {threads}")
+    if threads is not None:
+        _backend.set_num_threads(threads)

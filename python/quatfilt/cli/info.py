@@ -1,0 +1,107 @@
+"""``quatfilt info``: what is in a file, and what is wrong with it."""
+
+from typing import Any
+
+import numpy as np
+
+from quatfilt.cli import _options, _output
+from quatfilt.motion.defects import find_defects
+from quatfilt.motion.motion import Motion
+from quatfilt.noise.noise import noise_level
+
+_SHOWN = 10
+
+
+def info(
+    path: _options.Input,
+    *,
+    fps: _options.Fps = None,
+    skeleton: _options.SkeletonFile = None,
+    first_frame: _options.FirstFrameChoice = "auto",
+    json: _options.Json = False,
+) -> None:
+    """Show what is in a motion file, and how noisy it is.
+
+    The noise of a joint is the estimated deviation per component of its rotation vector. A spike is a sample that
+    leaves both of its neighbours; a jump is a turn of more than 15 degrees in a frame at 120 frames per second.
+    """
+    with _output.busy(f"reading {path.name}"):
+        motion = _options.read(path, fps=fps, skeleton=skeleton, first_frame=first_frame)
+    report = {"file": str(path), **describe(motion)}
+    if json:
+        _output.print_json(report)
+        return
+    joints = report["joints"]
+    _output.say(
+        f"{path}: {report['frames']} frames, {report['fps']:g} frames per second, {report['seconds']:.3g} s, "
+        f"{len(joints)} joints"
+    )
+    for note in motion.notes:
+        _output.say(f"  {note}")
+    if report["unit_centimetres"] != 1:
+        _output.say(f"  one unit is {report['unit_centimetres']:.4g} cm")
+    frozen = report["frozen_frames"]
+    _output.say(
+        f"  estimated noise {report['noise_degrees']:.2g}° (root mean square over the joints), "
+        f"{report['missing_samples']} missing samples, {report['spikes']} spikes, {report['jumps']} jumps, "
+        f"{frozen} frozen frame{'s' * (frozen != 1)}"
+    )
+    worst = sorted(
+        joints,
+        key=lambda joint: (
+            joint["spikes"] + joint["jumps"] + joint["missing_samples"],
+            joint["noise_degrees"],
+        ),
+        reverse=True,
+    )[:_SHOWN]
+    if not worst or not report["frames"]:
+        return
+    _output.say("")
+    _output.print_table(
+        ("joint", "noise °", "largest step °", "missing", "spikes", "jumps"),
+        [
+            (
+                joint["name"],
+                _output.number(joint["noise_degrees"], 3),
+                _output.number(joint["largest_step_degrees"], 1),
+                str(joint["missing_samples"]),
+                str(joint["spikes"]),
+                str(joint["jumps"]),
+            )
+            for joint in worst
+        ],
+        title="Worst joints" if len(joints) > _SHOWN else "Joints",
+    )
+
+
+def describe(motion: Motion) -> dict[str, Any]:
+    """Return what `info` says about a motion."""
+    defects = find_defects(motion.rotations, fps=motion.fps)
+    noise = np.degrees(noise_level(motion.rotations).astype(np.float64))
+    spikes, jumps = defects.spikes.sum(axis=0), defects.jumps.sum(axis=0)
+    return {
+        "frames": len(motion),
+        "fps": motion.fps,
+        "seconds": len(motion) / motion.fps,
+        "unit_centimetres": motion.skeleton.centimetres_per_unit,
+        "notes": list(motion.notes),
+        "noise_degrees": float(np.sqrt(np.mean(noise**2))) if len(noise) else 0.0,
+        "missing_samples": int(defects.missing.sum()),
+        "spikes": int(spikes.sum()),
+        "jumps": int(jumps.sum()),
+        "frozen_frames": defects.frozen,
+        "joints": [
+            {
+                "name": name,
+                "noise_degrees": float(noise[joint]),
+                "largest_step_degrees": float(defects.fastest[joint]),
+                "missing_samples": int(defects.missing[joint]),
+                "spikes": int(spikes[joint]),
+                "jumps": int(jumps[joint]),
+            }
+            for joint, name in enumerate(motion.skeleton.names)
+        ],
+    }
+
+
+__all__ = ["describe", "info"]

@@ -1,0 +1,1 @@
+"""What the results are measured on, and the commands that measure them."""

@@ -1,0 +1,31 @@
+"""The door to matplotlib, which is an optional extra."""
+
+from typing import Any
+
+TRUTH, NOISY, DENOISED = "#000000", "#9AA5B1", "#D55E00"
+"""Black, grey and vermilion (Okabe and Ito): told apart by every eye, and in print without colour."""
+
+CYCLE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+"""Okabe and Ito's palette, the strongest first."""
+
+
+def figure(width: float, height: float) -> Any:
+    """Make an empty figure, in inches, that draws into files alone."""
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: PLC0415 - optional
+        from matplotlib.figure import Figure  # noqa: PLC0415 - optional
+    except ImportError:
+        raise ImportError("pictures need matplotlib: pip install 'quatfilt[plot]'") from None
+    result = Figure(figsize=(width, height), dpi=150, layout="constrained")
+    FigureCanvasAgg(result)
+    return result
+
+
+def quiet(axes: Any) -> None:
+    """Take away the lines that say nothing."""
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.grid(visible=True, color="#E3E7EB", linewidth=0.6)
+    axes.set_axisbelow(True)
+
+
+__all__ = ["CYCLE", "DENOISED", "NOISY", "TRUTH", "figure", "quiet"]
