@@ -1,6 +1,7 @@
-"""Calls of the non-local pose means with defaults, for the laws and the oracle."""
+"""Calls of the non-local pose means with defaults, and options drawn by Hypothesis."""
 
 import numpy as np
+from hypothesis import strategies as st
 
 DEFAULTS = {
     "translation": None,
@@ -35,3 +36,19 @@ def rotations(backend, q, **options):
 def positions(backend, q, **options):
     """Filter the positions of the root."""
     return backend.nonlocal_pose_means(*arguments(q, **options))[1]
+
+
+def options(*, neighbors=True, search_radius=(-1, 0, 1, 4, 30), lookahead=True):
+    """Everything but the chart."""
+    return st.fixed_dictionaries(
+        {
+            "search_radius": st.sampled_from(search_radius),
+            "patch_radius": st.integers(0, 3),
+            "distance": st.sampled_from(["mean", "sum"]),
+            "weights": st.sampled_from(["pose", "joint"]),
+            "neighbors": st.sampled_from([-1, 1, 3]) if neighbors else st.just(-1),
+            "boundary": st.sampled_from(["mirror", "linear", "nearest"]),
+            "lookahead": st.sampled_from([-1, 0, 2, 5]) if lookahead else st.just(-1),
+            "bandwidth": st.sampled_from([0.02, 0.1, 1.0]),
+        }
+    )

@@ -21,6 +21,19 @@ WHITE_NOISE_LEVEL = 0.03
 """Relative bias of the estimated noise level for 30 frames or more: at most 2.4 % was measured."""
 
 
+EULER = 1e-12
+"""Euler angles, and rotations made of them: beside a gimbal lock, an angle moves by a rounding times up to a thousand."""
+
+FILE_ANGLE = 1e-9
+"""Rotations that went through a file, in radians: its angles have eight decimals of a degree, 1e-10 radians each."""
+
+PAIR_ANGLE = 0.01
+"""Degrees between an AMC and its conversion to BVH, whose angles have four decimals."""
+
+PAIR_POSITION = 1e-3
+"""Units between an AMC and its conversion to BVH: four decimals of the root, of angles and of five of offsets."""
+
+
 def filtered(dtype):
     """Return the tolerance for filters by the dtype of their rotations."""
     return FLOAT32 if np.dtype(dtype) == np.float32 else FLOAT64

@@ -22,7 +22,7 @@ _Choice = TypeVar("_Choice", bound=str)
 
 def floats(value: Any, name: str) -> Array:
     """Return `value` as a native float32 or float64 array, without a copy where it already is one."""
-    if hasattr(value, "as_quat"):  # SciPy's Rotation, scalar last
+    if _is_rotation(value):  # SciPy's, scalar last
         value = np.roll(value.as_quat(), 1, axis=-1)
     elif hasattr(value, "__dlpack__") and not hasattr(value, "__array__"):
         value = np.from_dlpack(value)
@@ -53,7 +53,12 @@ def quaternions(value: Any, name: str, *, scalar_first: bool = True) -> Array:
     array = floats(value, name)
     if array.ndim < 1 or array.shape[-1] != 4:
         raise ValueError(f"{name}: expected shape (..., 4), got {array.shape}")
-    return _scalar_first(array, scalar_first=scalar_first)
+    # SciPy's rotations were scalar last by themselves; `scalar_first` then speaks of the result alone.
+    return _scalar_first(array, scalar_first=scalar_first or _is_rotation(value))
+
+
+def _is_rotation(value: Any) -> bool:
+    return hasattr(value, "as_quat")
 
 
 def vectors(value: Any, name: str) -> Array:
@@ -79,7 +84,7 @@ def clip(value: Any, name: str = "rotations", *, scalar_first: bool = True) -> t
     missing, worst, index = _backend.ops().scan(array)
     if worst > _FAR_FROM_UNIT:
         frame, joint = divmod(index, array.shape[1])
-        norm = float(np.linalg.norm(array[frame, joint].astype(np.float64)))
+        norm = math.hypot(*array[frame, joint].tolist())
         raise ValueError(
             f"{name}: expected unit quaternions, got norm {norm:.6g} at frame {frame}, joint {joint}",
         )
@@ -136,7 +141,7 @@ def integer(value: Any, name: str, *, at_least: int | None = None, at_most: int 
 def choice(value: Any, name: str, options: tuple[_Choice, ...]) -> _Choice:
     """Return `value` if it is one of `options`."""
     for option in options:
-        if value == option:
+        if isinstance(value, str) and value == option:
             return option
     raise ValueError(f"{name}: expected one of {', '.join(map(repr, options))}, got {value!r}")
 

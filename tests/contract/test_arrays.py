@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import quatfilt as qf
+from layouts import LAYOUTS
 from scipy.spatial.transform import Rotation
 
 UNARY = {
@@ -33,37 +34,6 @@ def call(name, array):
 def rows(name, dtype=np.float64, shape=(6, 5)):
     values = np.random.default_rng(3).standard_normal((*shape, width(name)))
     return values.astype(dtype)
-
-
-def strided(array):
-    wide = np.zeros((array.shape[0] * 2, *array.shape[1:]), array.dtype)
-    wide[::2] = array
-    return wide[::2]
-
-
-def read_only(array):
-    array = array.copy()
-    array.flags.writeable = False
-    return array
-
-
-def misaligned(array):
-    room = np.zeros(array.nbytes + 1, np.uint8)
-    view = room[1:].view(array.dtype).reshape(array.shape)
-    view[...] = array
-    return view
-
-
-LAYOUTS = {
-    "column-major": np.asfortranarray,
-    "misaligned": misaligned,
-    "other byte order": lambda array: array.astype(array.dtype.newbyteorder()),
-    "read-only": read_only,
-    "reversed": lambda array: np.ascontiguousarray(array[::-1])[::-1],
-    "reversed components": lambda array: np.ascontiguousarray(array[..., ::-1])[..., ::-1],
-    "strided": strided,
-    "transposed": lambda array: np.ascontiguousarray(np.swapaxes(array, 0, 1)).swapaxes(0, 1),
-}
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])

@@ -7,27 +7,12 @@ import pytest
 import tolerances
 from hypothesis import given
 from hypothesis import strategies as st
+from nlpm import options
 
 seeds = st.integers(0, 2**32 - 1)
 charts = st.sampled_from(["mean", "identity", "local"])
 equivariant_charts = st.sampled_from(["mean", "local"])
 dtypes = st.sampled_from([np.float32, np.float64])
-
-
-def options(*, neighbors=True, search_radius=(-1, 0, 1, 4, 30), lookahead=True):
-    """Everything but the chart."""
-    return st.fixed_dictionaries(
-        {
-            "search_radius": st.sampled_from(search_radius),
-            "patch_radius": st.integers(0, 3),
-            "distance": st.sampled_from(["mean", "sum"]),
-            "weights": st.sampled_from(["pose", "joint"]),
-            "neighbors": st.sampled_from([-1, 1, 3]) if neighbors else st.just(-1),
-            "boundary": st.sampled_from(["mirror", "linear", "nearest"]),
-            "lookahead": st.sampled_from([-1, 0, 2, 5]) if lookahead else st.just(-1),
-            "bandwidth": st.sampled_from([0.02, 0.1, 1.0]),
-        }
-    )
 
 
 without_ties = options(neighbors=False)
@@ -250,7 +235,10 @@ def test_it_removes_noise(backend, chart):
 @pytest.mark.parametrize(
     ("distance", "moves"), [(1, True), (80, True), (119, True), (121, False), (300, False)]
 )
-def test_an_untrusted_frame_follows_others_however_faint_down_to_one_limit(backend, dtype, distance, moves):
+@pytest.mark.parametrize("neighbors", [-1, 1])
+def test_an_untrusted_frame_follows_others_however_faint_down_to_one_limit(
+    backend, dtype, distance, moves, neighbors
+):
     """In a steady turn, seen with its past alone, frame 3 has one candidate, frame 2, at a known patch distance."""
     step = 0.25
     q = clips.from_vectors(step * np.arange(6)[:, None, None] * np.array([0.6, 0.8, 0])).astype(dtype)
@@ -258,5 +246,7 @@ def test_an_untrusted_frame_follows_others_however_faint_down_to_one_limit(backe
     confidence[3] = 0
     chosen = {"search_radius": 1, "patch_radius": 1, "lookahead": 0, "distance": "sum", "chart": "local"}
     bandwidth = step / np.sqrt(2 * distance)
-    result = nlpm.rotations(backend, q, confidence=confidence, bandwidth=bandwidth, **chosen)
+    result = nlpm.rotations(
+        backend, q, confidence=confidence, bandwidth=bandwidth, neighbors=neighbors, **chosen
+    )
     assert clips.angles(result[3], q[2] if moves else q[3]) < tolerances.filtered(dtype)

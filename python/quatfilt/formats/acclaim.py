@@ -127,10 +127,8 @@ def _frames(asf: dict[str, Any]) -> Values:
 def _between(frames: Values, turned: Values) -> Values:
     """Return ``C·R·C⁻¹``: rotations about the axes of the bones, as seen from the global frame at rest."""
     shape = turned.shape
-    there = np.broadcast_to(frames, shape).reshape(-1, 4)
-    result: Values = ops().multiply(
-        ops().multiply(there, turned.reshape(-1, 4)), ops().conjugate(np.ascontiguousarray(there))
-    )
+    there = np.ascontiguousarray(np.broadcast_to(frames, shape)).reshape(-1, 4)
+    result: Values = ops().multiply(ops().multiply(there, turned.reshape(-1, 4)), ops().conjugate(there))
     return result.reshape(shape)
 
 

@@ -16,14 +16,20 @@ _POSITIONS = ("Xposition", "Yposition", "Zposition")
 _ROTATIONS = ("Zrotation", "Yrotation", "Xrotation")
 """Channels of joints that came from elsewhere, in the commonest order."""
 
-_REST_TURN = 1e-9
+_BODY = 15
+"""A skeleton of fewer joints is no CMU recording, whose conversions have 31 and more."""
+
+_REST_ROOT = 1e-9
 """Radians by which a root is turned in a rest row: not at all, but for a rounding."""
 
 _REST_JOINT = np.radians(1.0)
 """Most joints of a rest row are turned by less than this."""
 
-_JUMP = np.radians(10.0)
-"""From a rest row to the recording, some joint turns by more than this, and by more than five times what it does next."""
+_ROOT_JUMP, _JOINT_JUMP = np.radians(0.5), np.radians(10.0)
+"""From a rest row to the recording, the root or another joint turns by more than this…"""
+
+_LEAP = 5.0
+"""…and by so many times what it does next; some conversions blend the joints, but the root, over several rows."""
 
 
 @dataclass(frozen=True)
@@ -119,19 +125,18 @@ def _positions(values: Values, names: tuple[tuple[str, ...], ...], skeleton: Ske
 
 def _begins_at_rest(rotations: Values, skeleton: Skeleton) -> bool:
     """Tell whether the first row is a rest pose: every comparison with a missing sample says no."""
-    if len(rotations) < 3:
+    if len(rotations) < 3 or len(skeleton) < _BODY:
         return False
     identity = np.zeros_like(rotations[0])
     identity[:, 0] = 1
     turned = ops().geodesic_distance(rotations[0], identity)
     jump = ops().geodesic_distance(rotations[0], rotations[1])
     step = ops().geodesic_distance(rotations[1], rotations[2])
-    return bool(
-        turned[skeleton.parents < 0].max() <= _REST_TURN
-        and np.median(turned) <= _REST_JOINT
-        and jump.max() > _JUMP
-        and jump.max() > 5 * step.max()
-    )
+    roots = skeleton.parents < 0
+    at_rest = turned[roots].max() <= _REST_ROOT and np.median(turned) <= _REST_JOINT
+    root_leaps = jump[roots].max() > max(_ROOT_JUMP, _LEAP * step[roots].max())
+    joints_leap = jump.max() > _JOINT_JUMP and jump.mean() > _LEAP * step.mean()
+    return bool(at_rest and (root_leaps or joints_leap))
 
 
 def write(path: str, motion: Motion) -> bytes:

@@ -129,28 +129,39 @@ def write_rotations(
     A joint whose rotations are those of the `original` table keeps its numbers. Others get curves that are continuous in time
     and begin on the branch of the original's first frame, through the original's numbers where a sample is the same.
     """
-    for axes, members, columns in _groups(joints):
-        present = columns >= 0
+    for group in _groups(joints):
+        axes, members, columns = group
         q = quaternions[:, members]
-        angles = _principal(q, axes, present[:, 1] & ~present[:, 2])
-        changed: Mask = np.ones(len(members), np.bool_)
-        start = np.full((len(members), 3), np.nan)
-        if original is not None and len(original):
-            before = _angles(original, columns, "degrees")
-            same = same_rotations(q, _rotations_of(before, axes))
-            changed = np.asarray(~same.all(axis=0))
-            angles[same] = before[same]
-            start = before[0]
-        if changed.any():
-            curves = ops().continuous_euler(
-                np.ascontiguousarray(angles[:, changed]), np.ascontiguousarray(start[changed]), axes
-            )
-            angles[:, changed] = curves
-        degrees = np.round(np.rad2deg(angles), _ROUNDED)
-        table[:, columns[present]] = degrees[:, present]
-        if original is not None:
-            kept = columns[~changed][present[~changed]]
-            table[:, kept] = original[:, kept]
+        if original is None or not len(original):
+            _write_curves(table, q, group, None, None)
+            continue
+        before = _angles(original, columns, "degrees")
+        same = same_rotations(q, _rotations_of(before, axes))
+        whole = same.all(axis=0)
+        kept = columns[whole]
+        table[:, kept[kept >= 0]] = original[:, kept[kept >= 0]]
+        if not whole.all():
+            new = ~whole
+            part = _Group(axes, [], columns[new])
+            _write_curves(table, q[:, new], part, before[:, new], same[:, new])
+
+
+def _write_curves(
+    table: Values, quaternions: Array, group: _Group, before: Values | None, same: Mask | None
+) -> None:
+    """Fill the channels of joints of one order of axes with curves, through `before` where samples are the `same`."""
+    present = group.columns >= 0
+    angles = _principal(quaternions, group.axes, present[:, 1] & ~present[:, 2])
+    start = np.full((len(group.columns), 3), np.nan)
+    if before is not None and same is not None:
+        angles[same] = before[same]
+        start = before[0].copy()
+    curves = ops().continuous_euler(angles, start, group.axes)
+    degrees = np.round(np.rad2deg(curves), _ROUNDED)
+    if present.all():
+        table[:, group.columns.ravel()] = degrees.reshape(len(degrees), -1)
+    else:
+        table[:, group.columns[present]] = degrees[:, present]
 
 
 def rounded(values: Array, original: Array | None) -> Values:

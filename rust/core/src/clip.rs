@@ -95,7 +95,7 @@ impl<'a, T: Real> ClipMut<'a, T> {
 const ALIGNMENT: usize = 64;
 
 /// Rows of equal length, each aligned to a cache line: the layout of every hot loop.
-#[derive(Debug, Clone)]
+#[derive(Debug, Default)]
 pub struct Planes<T> {
     buffer: Vec<T>,
     start: usize,
@@ -108,11 +108,23 @@ impl<T: Real> Planes<T> {
     /// `rows` planes of `length` zeros.
     #[must_use]
     pub fn new(rows: usize, length: usize) -> Self {
+        let mut planes = Self::default();
+        planes.reshape(rows, length);
+        planes
+    }
+
+    /// Makes them `rows` planes of `length`, keeping the memory where it suffices; what they hold is then left over from
+    /// before, or 0.
+    pub fn reshape(&mut self, rows: usize, length: usize) {
         let line = ALIGNMENT / size_of::<T>();
-        let stride = length.next_multiple_of(line);
-        let buffer = vec![T::ZERO; rows * stride + line];
-        let start = buffer.as_ptr().align_offset(ALIGNMENT).min(line);
-        Self { buffer, start, stride, length, rows }
+        self.stride = length.next_multiple_of(line);
+        self.length = length;
+        self.rows = rows;
+        let needed = rows * self.stride + line;
+        if self.buffer.len() < needed {
+            self.buffer = vec![T::ZERO; needed];
+            self.start = self.buffer.as_ptr().align_offset(ALIGNMENT).min(line);
+        }
     }
 
     /// How many samples a plane holds.

@@ -10,6 +10,9 @@
 //! | `exp` | results above the subnormals | 2 | 2 |
 //! | `sin`, `cos` | `|x| ≤ π`, absolute, in ulp of 1 | 1 | 1 |
 //! | `atan2` | the upper half plane | 3 | 2 |
+//! | quaternion logarithm | all, in ulp of its length | 4 | 3 |
+//! | quaternion exponential | angles up to π, in ulp of 1 | 4 | 4 |
+//! | rotation angle | all | 3 | 3 |
 //!
 //! Polynomials: Cephes (S. Moshier) for sine, cosine and arc tangent; Taylor of degree 13 and 7 for `exp`.
 

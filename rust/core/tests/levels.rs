@@ -7,7 +7,7 @@ use quatfilt_core::parallel::Interrupt;
 use quatfilt_core::rotations::{mean, quaternion};
 use quatfilt_core::simd::Level;
 use quatfilt_core::window::Boundary;
-use quatfilt_core::{ClipView, Error, Real};
+use quatfilt_core::{ClipMut, ClipView, Error, Real};
 
 /// More than a task, and no multiple of a vector.
 const ROWS: usize = 20_011;
@@ -69,7 +69,13 @@ fn filters<T: Real>() -> Result<Vec<(&'static str, Vec<T>)>, Error> {
                 lookahead: None,
             };
             let mut out = vec![T::ZERO; q.len()];
-            filter.filter(view, None, None, &mut out, &interrupt)?;
+            filter.filter(
+                view,
+                None,
+                None,
+                ClipMut::new(&mut out, view.frames(), view.joints())?,
+                &interrupt,
+            )?;
             results.push((name, out));
         }
     }

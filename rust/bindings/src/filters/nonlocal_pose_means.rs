@@ -6,7 +6,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use quatfilt_core::filters::nonlocal_pose_means::{Chart, Distance, NonlocalPoseMeans, Translation, Weights};
 use quatfilt_core::window::Boundary;
-use quatfilt_core::{ClipView, Real};
+use quatfilt_core::{ClipMut, ClipView, Real};
 
 /// Filters rotations `(frames, joints, 4)` and, with the same weights, a translation `(frames, 3)`.
 ///
@@ -85,6 +85,7 @@ fn typed<T: Real + Element>(
         let window = filter.search_radius.map_or(frames, |radius| radius.min(frames));
         run_interruptible(py, q.len() * window, |interrupt| {
             let translation = values.zip(moved_out).map(|(values, out)| Translation { values, out });
+            let out = ClipMut::new(out, frames, joints)?;
             filter.filter(ClipView::new(q, frames, joints)?, confidence, translation, out, interrupt)
         })?;
     }

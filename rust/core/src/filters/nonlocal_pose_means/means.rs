@@ -1,6 +1,6 @@
 //! The weighted means of a tile: sums per joint, settled group by group.
 
-use super::kernels::{self, LANE, SHIFT};
+use super::kernels::{self, LANE, Lags, SHIFT};
 use super::likeness::Likeness;
 use super::path::JointChart;
 use super::tile::{Piece, Tile};
@@ -24,6 +24,8 @@ pub(super) struct Means<'a, T> {
     /// Per joint, and then for the translation: sums of 3 coordinates and, with confidence, of its share of weights; when
     /// settled, the means.
     sums: Planes<T>,
+    /// Whether the group's sums in fixed charts hold nothing yet but what is left over in memory.
+    fresh: bool,
     /// With confidence: per joint (fixed chart) and translation, the samples times their confidence, and it.
     trusted: Option<Planes<T>>,
 }
@@ -32,7 +34,7 @@ pub(super) struct Means<'a, T> {
 const PER_JOINT: usize = 4;
 
 impl<'a, T: Real> Means<'a, T> {
-    pub(super) fn new(tile: &'a Tile<'a, T>) -> Self {
+    pub(super) fn new(tile: &'a Tile<'a, T>, mut sums: Planes<T>) -> Self {
         let joints = tile.rows.len();
         let padded = tile.frames.next_multiple_of(LANE);
         let trusted = tile.confidence.as_ref().map(|confidence| {
@@ -57,12 +59,14 @@ impl<'a, T: Real> Means<'a, T> {
             }
             trusted
         });
+        sums.reshape((joints + 1) * PER_JOINT, padded);
         Self {
             tile,
             group: 0..0,
             most: vec![T::ZERO; padded],
             total: vec![T::ZERO; padded],
-            sums: Planes::new((joints + 1) * PER_JOINT, padded),
+            sums,
+            fresh: true,
             trusted,
         }
     }
@@ -72,6 +76,23 @@ impl<'a, T: Real> Means<'a, T> {
         self.group = group;
         self.most.fill(T::ZERO);
         self.total.fill(T::ZERO);
+        self.fresh = true;
+        // Local charts and single candidates are added one by one.
+        let singly = self.tile.clip.filter.neighbors.is_some();
+        let moved = self.moved().map(|_| self.tile.rows.len());
+        for index in self.group.clone().chain(moved) {
+            let local = self.tile.clip.paths.charts.get(index) == Some(&JointChart::Local);
+            if singly || local {
+                for sums in self.sums.rows_mut::<PER_JOINT>(index * PER_JOINT) {
+                    sums.fill(T::ZERO);
+                }
+            }
+        }
+    }
+
+    /// Gives the memory of the sums back.
+    pub(super) fn into_sums(self) -> Planes<T> {
+        self.sums
     }
 
     /// The translation, if the group takes it along.
@@ -94,30 +115,26 @@ impl<'a, T: Real> Means<'a, T> {
             .collect()
     }
 
-    /// Adds the samples of a block of lags from `lag`, for fixed charts and the translation.
-    pub(super) fn add_block(&mut self, lag: usize, lags: usize, forward: &Planes<T>, backward: &Planes<T>) {
-        let at = self.tile.at;
+    /// Adds the samples of a block of lags, for fixed charts and the translation.
+    pub(super) fn add_block(
+        &mut self,
+        first: usize,
+        count: usize,
+        forward: &Planes<T>,
+        backward: &Planes<T>,
+    ) {
+        let block = Lags { at: self.tile.at, first, count, forward, backward, fresh: self.fresh };
         for (index, planes) in self.fixed() {
             let row = index * PER_JOINT;
             match &self.trusted {
-                None => {
-                    kernels::accumulate(
-                        self.sums.rows_mut::<3>(row),
-                        planes,
-                        at,
-                        lag,
-                        lags,
-                        forward,
-                        backward,
-                    );
-                }
+                None => kernels::accumulate(self.sums.rows_mut::<3>(row), planes, &block),
                 Some(trusted) => {
                     let planes = trusted.rows_from::<PER_JOINT>(row);
-                    let sums = self.sums.rows_mut::<PER_JOINT>(row);
-                    kernels::accumulate(sums, planes, at, lag, lags, forward, backward);
+                    kernels::accumulate(self.sums.rows_mut::<PER_JOINT>(row), planes, &block);
                 }
             }
         }
+        self.fresh = false;
     }
 
     /// Adds the samples of pairs that were just weighed, for joints in the local chart.
@@ -215,12 +232,11 @@ impl<'a, T: Real> Means<'a, T> {
     /// Writes the settled means to `out`, `(frames, joints, 4)`, and to `moved`, `(frames, 3)`.
     ///
     /// Returns whether the sign of a rotation turns from one frame to the next.
-    pub(super) fn store(&self, out: &mut [T], moved: &mut [T]) -> bool {
+    pub(super) fn store(&self, out: &mut [T], moved: &mut [T], rows: &mut [[T; 4]]) -> bool {
         let tile = self.tile;
         let joints = tile.rows.len();
         let (samples, _) = out.as_chunks_mut::<4>();
         // Rows are put together in a buffer that stays in the cache, and then written once, in order.
-        let mut rows = vec![[T::ZERO; 4]; LANE * joints];
         let mut before: Option<Vec<[T; 4]>> = None;
         let mut turned = false;
         for (chunk, out) in samples.chunks_mut(LANE * joints).enumerate() {

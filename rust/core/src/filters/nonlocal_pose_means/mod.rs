@@ -31,9 +31,10 @@ use crate::error::check_length;
 use crate::parallel::{self, Interrupt};
 use crate::rotations::quaternion;
 use crate::window::{Boundary, Extended};
-use crate::{ClipView, Error, Real};
+use crate::{ClipMut, ClipView, Error, Real};
 use path::Paths;
-use tile::{Clip, Tile};
+use std::sync::Mutex;
+use tile::{Buffers, Clip, Tile};
 
 /// Where rotations become vectors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -139,10 +140,11 @@ impl NonlocalPoseMeans {
         clip: ClipView<'_, T>,
         confidence: Option<&[T]>,
         translation: Option<Translation<'_, T>>,
-        out: &mut [T],
+        out: ClipMut<'_, T>,
         interrupt: &Interrupt,
     ) -> Result<(), Error> {
         let (frames, joints) = (clip.frames(), clip.joints());
+        let out = out.into_data();
         check_length("out", clip.data().len(), out.len())?;
         check_length("bandwidth", joints, self.bandwidth.len())?;
         if let Some(confidence) = confidence {
@@ -179,10 +181,18 @@ impl NonlocalPoseMeans {
             .zip(chunks_or_empty(moved_out, length * moved_columns))
             .collect();
         let work = frames * joints * (20 + 2 * (reach.back.min(frames) + reach.ahead.min(frames)));
+        let spare: Mutex<Vec<Buffers<T>>> = Mutex::default();
         let turned = parallel::map(tiles, work, |index, (out, moved_out)| {
+            interrupt.check()?;
             let first = index * length;
-            Tile::new(&shared, first, (first + length).min(frames), interrupt)?
-                .filter(out, moved_out, interrupt)
+            let kept = spare.lock().map_or(None, |mut spare| spare.pop());
+            let mut buffers = kept.unwrap_or_default();
+            let tile = Tile::new(&shared, first, (first + length).min(frames), &mut buffers);
+            let turned = tile.filter(out, moved_out, &mut buffers, interrupt);
+            if let Ok(mut spare) = spare.lock() {
+                spare.push(buffers);
+            }
+            turned
         })?;
         let row = joints * 4;
         let meets = |frame: usize| {

@@ -1,6 +1,6 @@
 //! The most similar patches of each frame.
 
-use super::kernels::SHIFT;
+use super::kernels::{FARTHEST, SHIFT};
 use super::means::Means;
 use super::tile::{Piece, Side};
 use crate::Real;
@@ -40,7 +40,7 @@ impl<T: Real> Nearest<T> {
 
     fn insert(&mut self, frame: usize, candidate: Candidate<T>) {
         let best = &mut self.best[frame];
-        if !candidate.exponent.is_finite() {
+        if !candidate.exponent.is_finite() || candidate.exponent > T::from_f64(FARTHEST) {
             return;
         }
         if best.len() == self.count {
@@ -56,7 +56,7 @@ impl<T: Real> Nearest<T> {
     /// Adds the kept candidates to the means.
     pub(super) fn add_to(&self, means: &mut Means<'_, T>) {
         for (frame, best) in self.best.iter().enumerate() {
-            for candidate in best {
+            for candidate in best.iter().filter(|candidate| candidate.exponent <= T::from_f64(FARTHEST)) {
                 let weight = (T::from_f64(SHIFT) - candidate.exponent).exp();
                 means.add_one(frame, candidate.lag, candidate.later, weight);
             }

@@ -121,6 +121,12 @@ impl<T: Real> Paths<T> {
         Ok(Self { charts, flips })
     }
 
+    /// 1 where the path turns the sign of a sample, for frames in a range: `(frames, joints)`.
+    pub(super) fn flips(&self, frames: std::ops::Range<usize>) -> &[u8] {
+        let joints = self.charts.len();
+        &self.flips[frames.start * joints..frames.end * joints]
+    }
+
     /// The sign by which the path turns a sample, as 1 or −1.
     #[inline(always)]
     pub(super) fn sign(&self, frame: usize, joint: usize) -> T {

@@ -68,6 +68,16 @@ pub(super) struct Side {
     pub(super) frames: Range<usize>,
 }
 
+/// Memory that goes from tile to tile: fresh pages cost as much as the arithmetic.
+#[derive(Debug, Default)]
+pub(super) struct Buffers<T> {
+    planes: Planes<T>,
+    sums: Planes<T>,
+    forward: Planes<T>,
+    backward: Planes<T>,
+    rows: Vec<[T; 4]>,
+}
+
 /// A tile and its surroundings, as planes.
 #[derive(Debug)]
 pub(super) struct Tile<'a, T> {
@@ -90,13 +100,7 @@ pub(super) struct Tile<'a, T> {
 
 impl<'a, T: Real> Tile<'a, T> {
     /// Loads the frames `first..end` of the clip, with what the window around them reaches.
-    pub(super) fn new(
-        clip: &'a Clip<'a, T>,
-        first: usize,
-        end: usize,
-        interrupt: &Interrupt,
-    ) -> Result<Self, Error> {
-        interrupt.check()?;
+    pub(super) fn new(clip: &'a Clip<'a, T>, first: usize, end: usize, buffers: &mut Buffers<T>) -> Self {
         let Reach { back, ahead, before, after, pad, added } = clip.reach;
         let joints = clip.extended.joints();
         let from = (pad + first).saturating_sub(back + before);
@@ -109,10 +113,12 @@ impl<'a, T: Real> Tile<'a, T> {
             count += if *chart == JointChart::Local { 4 } else { 3 };
         }
         // The last lane of the tile may reach beyond what is loaded; its samples there are never used.
-        let mut planes = Planes::new(count, to - from + LANE);
+        let mut planes = std::mem::take(&mut buffers.planes);
+        planes.reshape(count, to - from + LANE);
+        buffers.rows.resize(LANE * joints, [T::ZERO; 4]);
         for (at, block) in clip.extended.blocks(from..to) {
             let (samples, _) = block.as_chunks::<4>();
-            load(clip.paths, &mut planes, &rows, samples, at, at - from);
+            load(clip.paths, &mut planes, &rows, samples, at, at - from, &mut buffers.rows);
         }
         let values = |source: &[T], columns: usize, slope: bool, boundary: Boundary| {
             let mut planes = Planes::new(columns, to - from + LANE);
@@ -125,7 +131,7 @@ impl<'a, T: Real> Tile<'a, T> {
             planes
         };
         let boundary = clip.filter.boundary;
-        Ok(Self {
+        Self {
             clip,
             frames: end - first,
             at: pad + first - from,
@@ -134,34 +140,38 @@ impl<'a, T: Real> Tile<'a, T> {
             rows,
             confidence: clip.confidence.map(|c| values(c, joints, false, boundary)),
             translation: clip.translation.map(|t| values(t, 3, true, boundary)),
-        })
+        }
     }
 
     /// Filters the tile into `out`, `(frames, joints, 4)`, and the translation into `moved`.
     ///
     /// Returns whether the sign of a rotation turns from one frame to the next.
     pub(super) fn filter(
-        &self,
+        self,
         out: &mut [T],
         moved: &mut [T],
+        buffers: &mut Buffers<T>,
         interrupt: &Interrupt,
     ) -> Result<bool, Error> {
         let joints = self.rows.len();
-        let mut means = Means::new(self);
+        let mut means = Means::new(&self, std::mem::take(&mut buffers.sums));
         let groups: Vec<Range<usize>> = match self.clip.filter.weights {
             Weights::Pose => std::iter::once(0..joints).collect(),
             Weights::Joint => (0..joints).map(|joint| joint..joint + 1).collect(),
         };
         for group in groups {
             means.begin(group.clone());
-            let mut likeness = Likeness::new(self, group);
+            let mut likeness = Likeness::new(&self, group);
             match self.clip.filter.neighbors {
-                None => self.add_all(&mut likeness, &mut means, interrupt)?,
+                None => self.add_all(&mut likeness, &mut means, buffers, interrupt)?,
                 Some(count) => self.add_nearest(count, &mut likeness, &mut means, interrupt)?,
             }
             means.settle();
         }
-        Ok(means.store(out, moved))
+        let turned = means.store(out, moved, &mut buffers.rows);
+        buffers.sums = means.into_sums();
+        buffers.planes = self.planes;
+        Ok(turned)
     }
 
     /// Adds the `count` most similar candidates of the window.
@@ -189,11 +199,13 @@ impl<'a, T: Real> Tile<'a, T> {
         &self,
         likeness: &mut Likeness<'_, T>,
         means: &mut Means<'_, T>,
+        buffers: &mut Buffers<T>,
         interrupt: &Interrupt,
     ) -> Result<(), Error> {
         let padded = self.frames.next_multiple_of(LANE);
-        let mut forward = Planes::new(BLOCK_LAGS, padded);
-        let mut backward = Planes::new(BLOCK_LAGS, padded);
+        let Buffers { forward, backward, .. } = buffers;
+        forward.reshape(BLOCK_LAGS, padded);
+        backward.reshape(BLOCK_LAGS, padded);
         let back = self.clip.reach.back;
         for first in (1..=back).step_by(BLOCK_LAGS) {
             interrupt.check()?;
@@ -215,7 +227,7 @@ impl<'a, T: Real> Tile<'a, T> {
                 means.note(forward.row(l));
                 means.note(backward.row(l));
             }
-            means.add_block(first, lags, &forward, &backward);
+            means.add_block(first, lags, forward, backward);
         }
         Ok(())
     }
@@ -260,29 +272,25 @@ fn load<T: Real>(
     samples: &[[T; 4]],
     frame: usize,
     at: usize,
+    buffer: &mut [[T; 4]],
 ) {
     let joints = rows.len();
     // Rows are copied in order into a buffer that stays in the cache, and taken apart there.
-    let mut buffer = vec![[T::ZERO; 4]; LANE * joints];
     for (chunk, samples) in samples.chunks(LANE * joints).enumerate() {
         let width = samples.len() / joints;
         let buffer = &mut buffer[..samples.len()];
-        buffer.copy_from_slice(samples);
         let start = chunk * LANE;
+        kernels::copy_signed(samples, paths.flips(frame + start..frame + start + width), buffer);
         let range = at + start..at + start + width;
         for (joint, &row) in rows.iter().enumerate() {
-            let mut signs = [T::ONE; LANE];
-            for (i, sign) in signs[..width].iter_mut().enumerate() {
-                *sign = paths.sign(frame + start + i, joint);
-            }
             match paths.charts[joint] {
                 JointChart::Fixed(centre) => {
                     let [x, y, z] = planes.rows_mut::<3>(row).map(|plane| &mut plane[range.clone()]);
-                    kernels::load_fixed(&buffer[joint..], joints, &signs, conjugate_one(centre), x, y, z);
+                    kernels::load_fixed(&buffer[joint..], joints, conjugate_one(centre), x, y, z);
                 }
                 JointChart::Local => {
                     let [w, x, y, z] = planes.rows_mut::<4>(row).map(|plane| &mut plane[range.clone()]);
-                    kernels::load_local(&buffer[joint..], joints, &signs, w, x, y, z);
+                    kernels::load_local(&buffer[joint..], joints, w, x, y, z);
                 }
             }
         }

@@ -57,7 +57,8 @@ pub fn unit<T: Real>(q: [T; 4]) -> [T; 4] {
 #[must_use]
 pub fn log_one<T: Real>(q: [T; 4]) -> [T; 3] {
     let square = q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    let sine = (square + T::TINY_SQUARE).sqrt();
+    // Not a sum: near −1 the result is `π·v/|v|`, which shows every digit of the length. NaN stays.
+    let sine = (if square < T::TINY_SQUARE { T::TINY_SQUARE } else { square }).sqrt();
     let factor = sine.atan2_nonnegative(q[0]) / sine;
     let opposite = (square < T::TINY_SQUARE) & (q[0] <= T::ZERO);
     [

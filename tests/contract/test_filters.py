@@ -1,0 +1,542 @@
+"""What filters take, what they refuse and in which words, and what they leave alone."""
+
+import math
+import signal
+import subprocess
+import sys
+import time
+
+import clips
+import numpy as np
+import pytest
+import quatfilt as qf
+import tolerances
+from layouts import LAYOUTS
+from quatfilt.denoise import METHODS
+from scipy.spatial.transform import Rotation
+
+FILTERS = {
+    "denoise": qf.denoise,
+    "nonlocal_pose_means": qf.nonlocal_pose_means,
+}
+"""From clip to clip, with the options that all filters have in common."""
+
+every_filter = pytest.mark.parametrize("name", FILTERS)
+
+FRAMES = 90
+REACH = 15
+"""Frames of the default window and patch together."""
+
+
+def clip(joints=3, frames=FRAMES, seed=0):
+    """A noisy clip, continuous in sign."""
+    rng = np.random.default_rng(seed)
+    return qf.continuous(clips.noisy(rng, clips.smooth(rng, frames, joints), 0.03))
+
+
+def refused(kind, call, *arguments, **options):
+    """Return the message with which a call is refused, and see that nothing was written."""
+    arrays = [x for x in (*arguments, *options.values()) if isinstance(x, np.ndarray)]
+    before = [x.tobytes() for x in arrays]
+    with pytest.raises(kind) as caught:
+        call(*arguments, **options)
+    assert [x.tobytes() for x in arrays] == before
+    return str(caught.value)
+
+
+# ---- shapes and types of rotations
+
+
+@pytest.mark.parametrize("shape", [(), (0,), (5, 3), (5, 3, 3), (4, 5), (2, 0)])
+@every_filter
+def test_rows_that_are_no_quaternions(name, shape):
+    message = refused(ValueError, FILTERS[name], np.zeros(shape))
+    assert message == f"rotations: expected shape (..., 4), got {shape}"
+
+
+@pytest.mark.parametrize("shape", [(4,), (2, 5, 3, 4)])
+@every_filter
+def test_arrays_that_are_no_clip(name, shape):
+    message = refused(ValueError, FILTERS[name], np.ones(shape) / 2)
+    assert message == f"rotations: expected shape (frames, joints, 4) or (frames, 4), got {shape}"
+
+
+@pytest.mark.parametrize(
+    ("value", "dtype"),
+    [
+        (np.zeros((5, 4), np.complex128), "complex128"),
+        (np.zeros((5, 4), "datetime64[s]"), "datetime64[s]"),
+        (np.full((5, 4), None), "object"),
+        ([["1", "0", "0", "0"]], "<U1"),
+        ("walk.bvh", "<U8"),
+        (None, "object"),
+    ],
+)
+@every_filter
+def test_what_is_no_number(name, value, dtype):
+    message = refused(TypeError, FILTERS[name], value)
+    assert message == f"rotations: expected real numbers, got dtype {dtype}"
+
+
+@every_filter
+def test_ragged_lists(name):
+    message = refused(ValueError, FILTERS[name], [[1.0, 0, 0, 0], [1.0, 0]])
+    assert message.startswith("rotations: expected a rectangular array of numbers (")
+
+
+@pytest.mark.parametrize("shape", [(0, 4), (0, 3, 4), (5, 0, 4), (0, 0, 4)])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@every_filter
+def test_nothing_comes_back(name, shape, dtype):
+    result = FILTERS[name](np.zeros(shape, dtype))
+    assert result.shape == shape
+    assert result.dtype == dtype
+
+
+@pytest.mark.parametrize("sample", [[-0.6, 0.0, 0.8, 0.0], [np.nan] * 4, [0.0] * 4, [0.63, 0.0, 0.8, 0.0]])
+@every_filter
+def test_one_frame_comes_back_unchanged(name, sample):
+    q = np.array([[sample, [1.0, 0, 0, 0]]])
+    result = FILTERS[name](q)
+    np.testing.assert_array_equal(result, q)
+    assert not np.shares_memory(result, q)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("layout", LAYOUTS)
+@every_filter
+def test_the_layout_does_not_matter(name, layout, dtype):
+    plain = clip().astype(dtype)
+    other = LAYOUTS[layout](plain)
+    before = other.tobytes()
+    result = FILTERS[name](other)
+    np.testing.assert_array_equal(result, FILTERS[name](plain))
+    assert result.dtype == dtype
+    assert result.dtype.isnative
+    assert result.flags.c_contiguous
+    assert result.flags.writeable
+    assert not np.shares_memory(result, other)
+    assert other.tobytes() == before, "the input was written"
+
+
+@pytest.mark.parametrize("dtype", [np.int8, np.int64, np.uint16, np.bool_])
+@every_filter
+def test_integers_become_float64(name, dtype):
+    q = np.zeros((20, 2, 4), dtype)
+    q[..., 1] = 1
+    result = FILTERS[name](q)
+    assert result.dtype == np.float64
+    np.testing.assert_array_equal(result, q)
+
+
+@pytest.mark.parametrize(("dtype", "expected"), [(np.float16, np.float32), (np.longdouble, np.float64)])
+@every_filter
+def test_other_floats(name, dtype, expected):
+    q = clip().astype(dtype)
+    result = FILTERS[name](q)
+    assert result.dtype == expected
+    np.testing.assert_array_equal(result, FILTERS[name](q.astype(expected)))
+
+
+class WithArray:
+    """As a torch tensor on the CPU."""
+
+    def __init__(self, array):
+        self.array = array
+
+    def __array__(self, dtype=None):
+        return self.array if dtype is None else self.array.astype(dtype)
+
+
+class WithDlpack:
+    """As an array of a library that NumPy does not know."""
+
+    def __init__(self, array):
+        self.array = array
+
+    def __dlpack__(self, **options):
+        return self.array.__dlpack__(**options)
+
+    def __dlpack_device__(self):
+        return self.array.__dlpack_device__()
+
+
+@pytest.mark.parametrize("wrap", [np.ndarray.tolist, WithArray, WithDlpack, memoryview])
+@every_filter
+def test_whatever_becomes_an_array(name, wrap):
+    q = clip()
+    np.testing.assert_array_equal(FILTERS[name](wrap(q)), FILTERS[name](q))
+
+
+@pytest.mark.parametrize("scalar_first", [True, False])
+@every_filter
+def test_scipy_rotations(name, scalar_first):
+    q = clip(joints=1)[:, 0]
+    rotations = Rotation.from_quat(q, scalar_first=True)
+    result = FILTERS[name](rotations, scalar_first=scalar_first)
+    expected = FILTERS[name](rotations.as_quat(scalar_first=scalar_first), scalar_first=scalar_first)
+    np.testing.assert_array_equal(result, expected)
+    back = Rotation.from_quat(result, scalar_first=scalar_first)
+    assert (back.inv() * rotations).magnitude().max() < 0.3
+
+
+@every_filter
+def test_scalar_last(name):
+    q = clip()
+    result = FILTERS[name](np.roll(q, -1, axis=-1), scalar_first=False)
+    np.testing.assert_array_equal(result, np.roll(FILTERS[name](q), -1, axis=-1))
+
+
+@every_filter
+def test_a_single_series_is_one_joint(name):
+    q = clip(joints=1)
+    np.testing.assert_array_equal(FILTERS[name](q[:, 0]), FILTERS[name](q)[:, 0])
+
+
+# ---- lengths and signs of quaternions
+
+
+@pytest.mark.parametrize("scale", [0.92, 1.08])
+@every_filter
+def test_lengths_near_one_are_normalised(name, scale):
+    q = clip()
+    result = FILTERS[name](scale * q)
+    np.testing.assert_allclose(np.linalg.norm(result, axis=-1), 1, atol=tolerances.ALGEBRA)
+    # The length of the first quaternions is lost in the last digit.
+    assert clips.angles(result, FILTERS[name](q)).max() < tolerances.FLOAT64
+
+
+@pytest.mark.parametrize(("scale", "norm"), [(0.5, "0.5"), (2.0, "2"), (1.125, "1.125"), (1e200, "1e+200")])
+@every_filter
+def test_lengths_far_from_one_are_refused(name, scale, norm):
+    q = np.tile([0.0, 0.0, -1.0, 0.0], (FRAMES, 3, 1))
+    q[17, 2] *= scale
+    message = refused(ValueError, FILTERS[name], q)
+    assert message == f"rotations: expected unit quaternions, got norm {norm} at frame 17, joint 2"
+
+
+@every_filter
+def test_signs_do_not_matter(name):
+    q = clip()
+    flipped = clips.flipped(np.random.default_rng(1), q)
+    flipped[0] = q[0]
+    np.testing.assert_array_equal(FILTERS[name](flipped), FILTERS[name](q))
+
+
+# ---- missing samples
+
+MISSING = {
+    "NaN": [np.nan] * 4,
+    "zeros": [0.0] * 4,
+    "one NaN": [0.5, 0.5, np.nan, 0.5],
+    "infinite": [np.inf, 0, 0, 0],
+}
+
+exact_charts = pytest.mark.parametrize("chart", ["local", "identity"])
+"""Charts that do not depend on the clip as a whole."""
+
+
+def with_gap(q, kind, start=40, end=44, joint=1):
+    other = q.copy()
+    other[start:end, joint] = MISSING[kind]
+    return other
+
+
+@exact_charts
+@pytest.mark.parametrize("kind", MISSING)
+@pytest.mark.parametrize("max_gap", [None, 10.0])
+def test_missing_samples_are_filled_and_do_not_spread(kind, max_gap, chart):
+    q = clip()
+    result = qf.nonlocal_pose_means(
+        with_gap(q, kind), bandwidth=0.05, chart=chart, boundary="nearest", max_gap=max_gap
+    )
+    assert np.isfinite(result).all()
+    whole = qf.nonlocal_pose_means(q, bandwidth=0.05, chart=chart, confidence=np.ones(FRAMES))
+    for beyond in (slice(0, 40 - REACH), slice(44 + REACH, None)):
+        np.testing.assert_array_equal(result[beyond], whole[beyond])
+    assert clips.angles(result[40:44, 1], whole[40:44, 1]).max() < 0.2
+    assert clips.angles(result, whole).max() > 0
+
+
+@pytest.mark.parametrize("kind", MISSING)
+@every_filter
+def test_missing_samples_are_kept(name, kind):
+    q = clip()
+    filled = FILTERS[name](with_gap(q, kind))
+    kept = FILTERS[name](with_gap(q, kind), gaps="keep")
+    gone = np.zeros(q.shape[:2], bool)
+    gone[40:44, 1] = True
+    assert np.isnan(kept[gone]).all()
+    np.testing.assert_array_equal(kept[~gone], filled[~gone])
+
+
+@pytest.mark.parametrize("kind", MISSING)
+@every_filter
+def test_missing_samples_are_refused(name, kind):
+    message = refused(ValueError, FILTERS[name], with_gap(clip(), kind), gaps="raise")
+    assert message == "rotations: expected no missing samples with gaps='raise', got 4"
+
+
+@every_filter
+def test_nothing_is_refused_where_nothing_is_missing(name):
+    q = clip()
+    np.testing.assert_array_equal(FILTERS[name](q, gaps="raise"), FILTERS[name](q))
+
+
+@exact_charts
+@pytest.mark.parametrize(("max_gap", "fps"), [(3, 1), (0.02, 120)])
+def test_sides_of_longer_gaps_are_filtered_apart(max_gap, fps, chart):
+    q = clip()
+    options = {"bandwidth": 0.05, "chart": chart}
+    result = qf.nonlocal_pose_means(with_gap(q, "NaN"), max_gap=max_gap, fps=fps, **options)
+    assert np.isnan(result[40:44, 1]).all()
+    for side in (slice(0, 40), slice(44, None)):
+        alone = qf.nonlocal_pose_means(q[side], confidence=np.ones(len(q[side])), **options)
+        np.testing.assert_array_equal(result[side], alone)
+
+
+@every_filter
+def test_a_joint_that_is_never_there(name):
+    q = clip()
+    q[:, 1] = np.nan
+    result = FILTERS[name](q)
+    assert np.isnan(result[:, 1]).all()
+    assert np.isfinite(result[:, [0, 2]]).all()
+
+
+@pytest.mark.parametrize("kind", ["NaN", "zeros"])
+@every_filter
+def test_a_clip_without_any_sample(name, kind):
+    result = FILTERS[name](np.tile(MISSING[kind], (20, 2, 1)))
+    assert np.isnan(result).all()
+
+
+# ---- windows
+
+
+@pytest.mark.parametrize("boundary", ["nearest", "mirror", "linear"])
+@pytest.mark.parametrize("frames", [2, 3, 10])
+@pytest.mark.parametrize("window", [{"search_radius": 500}, {"patch_radius": 500}, {"neighbors": 10**9}])
+def test_a_window_longer_than_the_clip_works(window, frames, boundary):
+    q = clip(frames=frames)
+    result = qf.nonlocal_pose_means(q, boundary=boundary, bandwidth=0.03, **window)
+    np.testing.assert_allclose(np.linalg.norm(result, axis=-1), 1, atol=tolerances.ALGEBRA)
+    assert clips.angles(q, result).max() < 1
+
+
+# ---- options
+
+POSITIVE = "expected a number above 0"
+NOT_NEGATIVE = "expected a number of at least 0"
+
+WRONG_OPTIONS = [
+    ("search_radius", 0, ValueError, "expected an integer of at least 1 and at most 100000, got 0"),
+    ("search_radius", -3, ValueError, "expected an integer of at least 1 and at most 100000, got -3"),
+    (
+        "search_radius",
+        10**9,
+        ValueError,
+        "expected an integer of at least 1 and at most 100000, got 1000000000",
+    ),
+    ("search_radius", 10.0, TypeError, "expected an integer of at least 1 and at most 100000, got float"),
+    ("search_radius", math.nan, TypeError, "expected an integer of at least 1 and at most 100000, got float"),
+    ("search_radius", True, TypeError, "expected an integer of at least 1 and at most 100000, got bool"),
+    ("search_radius", "10", TypeError, "expected an integer of at least 1 and at most 100000, got str"),
+    ("patch_radius", -1, ValueError, "expected an integer of at least 0 and at most 100000, got -1"),
+    (
+        "patch_radius",
+        10**30,
+        ValueError,
+        f"expected an integer of at least 0 and at most 100000, got {10**30}",
+    ),
+    ("patch_radius", 5.5, TypeError, "expected an integer of at least 0 and at most 100000, got float"),
+    ("patch_radius", None, TypeError, "expected an integer of at least 0 and at most 100000, got NoneType"),
+    ("neighbors", 0, ValueError, "expected an integer of at least 1 and at most 1e+09, got 0"),
+    ("neighbors", np.True_, TypeError, "expected an integer of at least 1 and at most 1e+09, got bool"),
+    ("lookahead", -1, ValueError, "expected an integer of at least 0 and at most 1e+09, got -1"),
+    ("lookahead", "0", TypeError, "expected an integer of at least 0 and at most 1e+09, got str"),
+    ("bandwidth", 0, ValueError, f"{POSITIVE}, got 0"),
+    ("bandwidth", -0.1, ValueError, f"{POSITIVE}, got -0.1"),
+    ("bandwidth", math.nan, ValueError, f"{POSITIVE}, got nan"),
+    ("bandwidth", math.inf, ValueError, f"{POSITIVE}, got inf"),
+    ("bandwidth", True, TypeError, f"{POSITIVE}, got bool"),
+    ("bandwidth", 1j, TypeError, f"{POSITIVE}, got complex"),
+    ("bandwidth", "wide", ValueError, "expected one of 'auto', got 'wide'"),
+    ("bandwidth", None, TypeError, "expected real numbers, got dtype object"),
+    ("bandwidth", [0.1, 0.1], ValueError, "expected a number or one per joint, shape (3,), got (2,)"),
+    ("bandwidth", [[0.1] * 3], ValueError, "expected a number or one per joint, shape (3,), got (1, 3)"),
+    ("bandwidth", [0.1, -0.1, 0.1], ValueError, f"[1]{{}}{POSITIVE}, got -0.1"),
+    ("bandwidth", [0.1, 0.1, np.nan], ValueError, f"[2]{{}}{POSITIVE}, got nan"),
+    ("distance", "max", ValueError, "expected one of 'mean', 'sum', got 'max'"),
+    ("distance", None, ValueError, "expected one of 'mean', 'sum', got None"),
+    ("weights", "joints", ValueError, "expected one of 'pose', 'joint', got 'joints'"),
+    ("weights", np.ones(3), ValueError, "expected one of 'pose', 'joint', got array([1., 1., 1.])"),
+    ("chart", "Mean", ValueError, "expected one of 'mean', 'identity', 'local', got 'Mean'"),
+    ("boundary", "wrap", ValueError, "expected one of 'nearest', 'mirror', 'linear', got 'wrap'"),
+    ("gaps", "drop", ValueError, "expected one of 'fill', 'keep', 'raise', got 'drop'"),
+    ("gaps", True, ValueError, "expected one of 'fill', 'keep', 'raise', got True"),
+    ("library", [], ValueError, "expected None; patches of other clips are not searched in this version"),
+    ("max_gap", -1, ValueError, f"{NOT_NEGATIVE}, got -1"),
+    ("max_gap", math.nan, ValueError, f"{NOT_NEGATIVE}, got nan"),
+    ("max_gap", "1 s", TypeError, f"{NOT_NEGATIVE}, got str"),
+    ("fps", 0, ValueError, f"{POSITIVE}, got 0"),
+    ("fps", -120, ValueError, f"{POSITIVE}, got -120"),
+    ("fps", math.inf, ValueError, f"{POSITIVE}, got inf"),
+    ("fps", True, TypeError, f"{POSITIVE}, got bool"),
+    ("fps", [120], TypeError, f"{POSITIVE}, got list"),
+    ("confidence", np.ones(FRAMES + 1), ValueError, "expected shape (90,) or (90, 3), got (91,)"),
+    ("confidence", np.ones((FRAMES, 1)), ValueError, "expected shape (90,) or (90, 3), got (90, 1)"),
+    ("confidence", 0.5, ValueError, "expected shape (90,) or (90, 3), got ()"),
+    ("confidence", np.linspace(0, 1.5, FRAMES), ValueError, "expected values from 0 to 1, got 1.5"),
+    ("confidence", np.linspace(-0.5, 1, FRAMES), ValueError, "expected values from 0 to 1, got -0.5"),
+    ("confidence", np.full(FRAMES, np.inf), ValueError, "expected values from 0 to 1, got inf"),
+    ("confidence", "high", TypeError, "expected real numbers, got dtype <U4"),
+]
+
+
+@pytest.mark.parametrize(("option", "value", "kind", "message"), WRONG_OPTIONS)
+@every_filter
+def test_wrong_options(name, option, value, kind, message):
+    said = refused(kind, FILTERS[name], clip(), **{option: value})
+    expected = option + message.replace("{}", ": ") if message.startswith("[") else f"{option}: {message}"
+    assert said == expected
+
+
+@pytest.mark.parametrize("frames", [0, 1])
+@pytest.mark.parametrize(
+    ("option", "value"), [("search_radius", 0), ("bandwidth", -1), ("gaps", "drop"), ("fps", 0)]
+)
+@every_filter
+def test_wrong_options_are_refused_for_the_shortest_clips_too(name, option, value, frames):
+    assert refused(ValueError, FILTERS[name], clip(frames=frames), **{option: value}).startswith(
+        f"{option}: "
+    )
+
+
+@every_filter
+def test_options_are_keyword_only(name):
+    with pytest.raises(TypeError, match="positional argument"):
+        FILTERS[name](clip(), 10)
+
+
+def test_numbers_of_numpy_and_one_bandwidth_per_joint():
+    q = clip()
+    expected = qf.nonlocal_pose_means(q, search_radius=7, bandwidth=0.05)
+    for radius, bandwidth in [
+        (np.int8(7), np.float64(0.05)),
+        (np.uint64(7), np.array(0.05)),
+        (7, [0.05] * 3),
+    ]:
+        result = qf.nonlocal_pose_means(q, search_radius=radius, bandwidth=bandwidth)
+        np.testing.assert_array_equal(result, expected)
+
+
+def test_confidence_per_frame_and_without_a_number():
+    q = clip()
+    trust = np.random.default_rng(0).random(FRAMES)
+    expected = qf.nonlocal_pose_means(q, confidence=np.repeat(trust[:, None], 3, axis=1))
+    np.testing.assert_array_equal(qf.nonlocal_pose_means(q, confidence=trust), expected)
+    trust[30:33] = 0
+    unknown = np.where(trust == 0, np.nan, trust)
+    expected = qf.nonlocal_pose_means(q, confidence=trust)
+    np.testing.assert_array_equal(qf.nonlocal_pose_means(q, confidence=unknown), expected)
+
+
+# ---- denoise
+
+
+@pytest.mark.parametrize("method", ["gauss", "", None, 1])
+def test_unknown_methods(method):
+    message = refused(ValueError, qf.denoise, clip(), method=method)
+    assert message == f"method: expected one of {', '.join(map(repr, METHODS))}, got {method!r}"
+
+
+def test_unknown_options():
+    message = refused(TypeError, qf.denoise, clip(), radius=3)
+    assert message.startswith(
+        "radius: expected an option of nonlocal_pose_means (search_radius, patch_radius, "
+    )
+    assert message.endswith("), got this name")
+
+
+@pytest.mark.parametrize("value", [None, "no", 0])
+def test_translation_is_a_switch(value):
+    message = refused(TypeError, qf.denoise, clip(), translation=value)
+    assert message == f"translation: expected True or False, got {type(value).__name__}"
+
+
+def test_options_reach_the_filter():
+    q = clip()
+    options = {"search_radius": 4, "patch_radius": 2, "bandwidth": 0.1, "chart": "local"}
+    np.testing.assert_array_equal(qf.denoise(q, **options), qf.nonlocal_pose_means(q, **options))
+
+
+def skeleton(joints):
+    return qf.Skeleton([f"joint{i}" for i in range(joints)], range(-1, joints - 1), np.ones((joints, 3)))
+
+
+def test_a_motion_comes_back_as_a_motion():
+    q = clip()
+    path = clips.path(np.random.default_rng(2), FRAMES)
+    motion = qf.Motion(q, path, fps=120, skeleton=skeleton(3))
+    before = motion.rotations.tobytes(), motion.translation.tobytes()
+    result = qf.denoise(motion)
+    np.testing.assert_array_equal(result.rotations, qf.denoise(q))
+    assert result.fps == 120
+    assert result.skeleton is motion.skeleton
+    assert np.abs(result.translation - path).max() > 0
+    np.testing.assert_array_equal(qf.denoise(motion, translation=False).translation, path)
+    assert (motion.rotations.tobytes(), motion.translation.tobytes()) == before
+
+
+def test_a_motion_knows_its_frame_rate():
+    q = with_gap(clip(), "NaN")
+    motion = qf.Motion(q, fps=120, skeleton=skeleton(3))
+    assert np.isfinite(qf.denoise(motion, max_gap=4 / 120).rotations).all()
+    assert np.isnan(qf.denoise(motion, max_gap=3 / 120).rotations[40:44, 1]).all()
+    assert np.isnan(qf.denoise(motion, max_gap=4 / 120, fps=60).rotations[40:44, 1]).all()
+
+
+@pytest.mark.parametrize("gaps", ["fill", "keep"])
+def test_gaps_in_the_translation(gaps):
+    path = np.linspace([0.0, 0, 0], [9, 0, -9], FRAMES)
+    path[50:53] = np.nan
+    motion = qf.Motion(clip(), path, fps=1, skeleton=skeleton(3))
+    result = qf.denoise(motion, gaps=gaps, bandwidth=0.05).translation
+    np.testing.assert_array_equal(np.isnan(result).any(axis=1), np.isnan(path[:, 0]) & (gaps == "keep"))
+
+
+# ---- Ctrl-C
+
+LONG_CALL = """
+import numpy as np, quatfilt as qf
+q = qf.add_gaussian_noise(np.tile([1.0, 0, 0, 0], (200_000, 20, 1)), sigma=0.05, rng=0)
+print("ready", flush=True)
+qf.nonlocal_pose_means(q, search_radius=None, bandwidth=0.05, chart={chart!r}, neighbors={neighbors})
+print("ended", flush=True)
+"""
+"""Minutes of work."""
+
+HANGING = 30
+"""Seconds after which a process counts as one that does not listen; it ends within a fraction of one."""
+
+
+@pytest.mark.skipif(
+    sys.platform == "win32", reason="not on this platform: there is no SIGINT for one process"
+)
+@pytest.mark.parametrize(("chart", "neighbors"), [("mean", None), ("local", 8)])
+def test_a_long_call_ends_at_ctrl_c(chart, neighbors):
+    program = LONG_CALL.format(chart=chart, neighbors=neighbors)
+    with subprocess.Popen(
+        [sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as child:
+        try:
+            assert child.stdout.readline() == "ready\n"
+            time.sleep(0.5)  # until it is within the core
+            child.send_signal(signal.SIGINT)
+            out, errors = child.communicate(timeout=HANGING)
+        finally:
+            child.kill()
+    assert out == ""
+    assert errors.rstrip().endswith("KeyboardInterrupt")
+    assert child.returncode != 0
