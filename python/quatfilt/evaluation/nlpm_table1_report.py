@@ -304,7 +304,10 @@ def draw(report: Report, path: Path) -> None:
     page = figure(9.0, 4.4)
     left, right = page.subplots(1, 2)
     names = [noise.name for noise in report.noises]
-    places = np.arange(len(names))
+    # Impulses are no further step of the noise's size: they stand apart.
+    places = np.array([place + 0.5 * (noise.multiple is None) for place, noise in enumerate(report.noises)])
+    graded = [place for place, noise in enumerate(report.noises) if noise.multiple is not None]
+    apart = [place for place, noise in enumerate(report.noises) if noise.multiple is None]
     markers = "osD^vP"
     for number, method in enumerate(ROWS[1:]):
         style = {
@@ -312,19 +315,20 @@ def draw(report: Report, path: Path) -> None:
             "marker": markers[number % len(markers)],
             "markersize": 5,
             "linewidth": 1.4,
-            "linestyle": "--" if method in ORACLES else "-",
-            "label": method,
         }
-        gains = [report.mean(method, name, "psnr") - report.mean(NOISY, name, "psnr") for name in names]
-        left.plot(places, gains, **style)
-        right.plot(places, [report.mean(method, name, "peak_kept") for name in names], **style)
+        gains = np.array([report.mean(method, n, "psnr") - report.mean(NOISY, n, "psnr") for n in names])
+        kept = np.array([report.mean(method, name, "peak_kept") for name in names])
+        for axes, values in ((left, gains), (right, kept)):
+            line = "--" if method in ORACLES else "-"
+            axes.plot(places[graded], values[graded], linestyle=line, label=method, **style)
+            axes.plot(places[apart], values[apart], linestyle="none", **style)
     left.set_ylabel("PSNR gained over the noisy clip (dB)")
     right.set_ylabel("peak angular speed kept (1 = the truth's)")
     right.set_yscale("log")
     right.axhline(1, color="black", linewidth=0.8)
     for axes in (left, right):
         quiet(axes)
-        axes.set_xticks(places, names, rotation=45)
+        axes.set_xticks(places, names, fontsize=8)
         axes.set_xlabel(f"noise (σ = {math.degrees(SIGMA):.2f}°)")
     handles, labels = left.get_legend_handles_labels()
     page.legend(handles, labels, loc="outside upper center", ncols=3, frameon=False)
