@@ -252,7 +252,7 @@ def test_version():
         ),
         (
             ["denoise", "noisy.bvh", "--search-radius", "0"],
-            "search_radius: expected an integer of at least 1, got 0",
+            "search_radius: expected an integer of at least 1",
         ),
         (
             ["denoise", "noisy.bvh", "--search-radius", "far"],
@@ -261,7 +261,7 @@ def test_version():
         (["denoise", "noisy.bvh", "--patch-radius", "x"], "--patch-radius"),
         (
             ["denoise", "noisy.bvh", "--patch-radius", "-1"],
-            "patch_radius: expected an integer of at least 0, got -1",
+            "patch_radius: expected an integer of at least 0",
         ),
         (["denoise", "noisy.bvh", "--chart", "flat"], "chart: expected one of 'mean'"),
         (["denoise", "noisy.bvh", "--fps", "0"], "fps: expected a number above 0, got 0"),
