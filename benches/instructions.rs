@@ -9,7 +9,7 @@ use quatfilt_core::filters::nonlocal_pose_means::{Chart, NonlocalPoseMeans, Weig
 use quatfilt_core::noise::noise;
 use quatfilt_core::parallel::{self, Interrupt};
 use quatfilt_core::rotations::{mean, quaternion};
-use quatfilt_core::{ClipView, Real};
+use quatfilt_core::{ClipMut, ClipView, Real};
 use quatfilt_formats::Precision;
 use quatfilt_formats::bvh::{self, FrameTime};
 use std::error;
@@ -56,7 +56,10 @@ fn numbers<T: Real>(kernel: &str, repetitions: usize) -> Result<(), Box<dyn erro
         "noise_level" => repeat(repetitions, || noise::noise_level(clip, &mut numbers[..JOINTS]))?,
         _ => {
             let filter = filter(kernel)?;
-            repeat(repetitions, || filter.filter(clip, None, None, &mut out, &interrupt))?;
+            repeat(repetitions, || {
+                let out = ClipMut::new(&mut out, clip.frames(), clip.joints())?;
+                filter.filter(clip, None, None, out, &interrupt)
+            })?;
         }
     }
     black_box((&out, &vectors, &numbers));
