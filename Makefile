@@ -2,10 +2,12 @@
 #
 #   make PYTHON=python3.12 test    another Python for the virtual environment
 #   make test PYTEST="-k mean -x"  arguments for pytest
+#   make bench BENCH="rotations"   arguments for the benchmarks
 
 PYTHON ?= python3
 VENV ?= .venv
 PYTEST ?=
+BENCH ?=
 
 ifeq ($(OS),Windows_NT)
 BIN := $(VENV)/Scripts
@@ -26,7 +28,7 @@ RUST_SOURCES := Cargo.toml Cargo.lock $(shell find rust -name '*.rs' -o -name Ca
 .PHONY: help  ## Show what there is
 help:
 	@grep -E '^\.PHONY: .*  ## ' $(firstword $(MAKEFILE_LIST)) \
-		| awk 'BEGIN {FS = "^\\.PHONY: |  ## "} {printf "  make %-14s %s\n", $$2, $$3}'
+		| awk 'BEGIN {FS = "^\\.PHONY: |  ## "} {printf "  make %-18s %s\n", $$2, $$3}'
 
 # ---- set-up: stamps in the virtual environment say what was done
 
@@ -96,9 +98,9 @@ format: $(VENV)/.group-lint
 	$(BIN)/ruff check --fix --exit-zero --quiet
 	$(BIN)/ruff format
 
-.PHONY: bench  ## Time whole calls beside other packages
+.PHONY: bench  ## Time whole calls beside other packages (arguments: BENCH="rotations -o docs/results")
 bench: build $(VENV)/.group-bench
-	$(BIN)/python benches/python
+	$(BIN)/python benches/python $(BENCH)
 
 .PHONY: bench-rust  ## Time the kernels with criterion
 bench-rust: prerequisites
@@ -107,6 +109,11 @@ bench-rust: prerequisites
 .PHONY: bench-test  ## Prove that the criterion benchmarks run, without timing them
 bench-test: prerequisites
 	cargo test --locked -p quatfilt-benches --benches
+
+.PHONY: bench-instructions  ## Count the instructions of kernels with valgrind (arguments: BENCH="log-f32")
+bench-instructions: build
+	cargo build --release --locked -p quatfilt-benches --bin instructions
+	$(BIN)/python benches/python/instructions.py target/release/instructions $(BENCH)
 
 .PHONY: docs  ## Write the reference of the Rust crates to target/doc and of the Python package to out/docs
 docs: build $(VENV)/.group-docs

@@ -3,10 +3,12 @@
 import clips
 import numpy as np
 import pytest
+import quatfilt as qf
 import tolerances
 from drawn import dtypes, joints, lengths, seeds, spoil, spoilt_clips
 from hypothesis import given
 from hypothesis import strategies as st
+from layouts import LAYOUTS
 from quatfilt import _core, _reference
 
 
@@ -66,3 +68,15 @@ def test_across_tasks_and_subsets(frames, dtype):
 def test_of_turning_joints(turns, dtype):
     rng = np.random.default_rng(1)
     agree(clips.turning(rng, 700, 3, turns=turns).astype(dtype))
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_layouts(layout, dtype):
+    rng = np.random.default_rng(2)
+    plain = clips.noisy(rng, clips.smooth(rng, 90, 3), 0.1).astype(dtype)
+    q = LAYOUTS[layout](plain)
+    result = qf.mean(q)
+    np.testing.assert_array_equal(result, qf.mean(plain))
+    with qf.use_backend("numpy"):
+        assert clips.angles(qf.mean(q), result).max() <= tolerances.filtered(dtype)

@@ -1,0 +1,72 @@
+//! Filters: non-local pose means by what its cost depends on, and gaps.
+
+use quatfilt_benches::clips;
+use quatfilt_benches::settings;
+use quatfilt_benches::timer::Timer;
+use quatfilt_core::filters::gaps;
+use quatfilt_core::filters::nonlocal_pose_means::{Chart, NonlocalPoseMeans, Weights};
+use quatfilt_core::parallel::Interrupt;
+use quatfilt_core::{ClipMut, ClipView, Error, Real};
+
+fn main() -> Result<(), Error> {
+    let mut timer = Timer::new();
+    for size in timer.sizes(&[1_000, 10_000, 100_000]) {
+        defaults::<f32>(&mut timer, size)?;
+        defaults::<f64>(&mut timer, size)?;
+    }
+    for size in timer.sizes(&[10_000]) {
+        variations::<f32>(&mut timer, size)?;
+        variations::<f64>(&mut timer, size)?;
+        fill_gaps::<f32>(&mut timer, size)?;
+        fill_gaps::<f64>(&mut timer, size)?;
+    }
+    Ok(())
+}
+
+fn defaults<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
+    let (frames, joints) = size;
+    let q = clips::rotations::<T>(frames, joints, 1)?;
+    let clip = ClipView::new(&q, frames, joints)?;
+    let mut out = vec![T::ZERO; q.len()];
+    let filter = settings::nonlocal_pose_means(joints);
+    let interrupt = Interrupt::new();
+    timer.levels::<T, _, _>("filters/nonlocal_pose_means", size, || {
+        filter.filter(clip, None, None, ClipMut::new(&mut out, clip.frames(), clip.joints())?, &interrupt)
+    })
+}
+
+/// The filter with one thing changed at a time.
+fn variations<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
+    let (frames, joints) = size;
+    let q = clips::rotations::<T>(frames, joints, 1)?;
+    let clip = ClipView::new(&q, frames, joints)?;
+    let mut out = vec![T::ZERO; q.len()];
+    let interrupt = Interrupt::new();
+    let default = || settings::nonlocal_pose_means(joints);
+    for (change, filter) in [
+        ("chart=identity", NonlocalPoseMeans { chart: Chart::Identity, ..default() }),
+        ("chart=local", NonlocalPoseMeans { chart: Chart::Local, ..default() }),
+        ("weights=joint", NonlocalPoseMeans { weights: Weights::Joint, ..default() }),
+        ("neighbors=8", NonlocalPoseMeans { neighbors: Some(8), ..default() }),
+        ("search_radius=5", NonlocalPoseMeans { search_radius: Some(5), ..default() }),
+        ("search_radius=40", NonlocalPoseMeans { search_radius: Some(40), ..default() }),
+        ("patch_radius=0", NonlocalPoseMeans { patch_radius: 0, ..default() }),
+        ("patch_radius=50", NonlocalPoseMeans { patch_radius: 50, ..default() }),
+    ] {
+        timer.threads::<T, _, _>(&format!("filters/nonlocal_pose_means/{change}"), size, || {
+            filter.filter(clip, None, None, ClipMut::new(&mut out, clip.frames(), clip.joints())?, &interrupt)
+        })?;
+    }
+    Ok(())
+}
+
+fn fill_gaps<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
+    let (frames, joints) = size;
+    let q = clips::gappy::<T>(frames, joints, 1)?;
+    let clip = ClipView::new(&q, frames, joints)?;
+    let mut out = vec![T::ZERO; q.len()];
+    let mut filled = vec![false; frames * joints];
+    timer.threads::<T, _, _>("filters/fill_gaps", size, || {
+        gaps::fill_gaps(clip, None, ClipMut::new(&mut out, frames, joints)?, &mut filled)
+    })
+}
