@@ -39,7 +39,7 @@ def denoise(
         The filter. "auto" is `nonlocal_pose_means` with a bandwidth from the estimated noise.
     translation : bool, default True
         Whether a motion's root translation is filtered too, with the weights of its poses; gaps in it are then filled
-        along straight lines.
+        along straight lines. With ``search_radius=None`` it is left alone: a pose that comes back comes back elsewhere.
     **options
         Options of the filter. A motion knows its frame rate: ``fps`` need not be given.
 
@@ -80,7 +80,8 @@ def denoise(
     motion = motion_or_rotations
     chosen = {**defaults, "fps": motion.fps, **options}
     missing: Mask = np.asarray(np.isnan(motion.translation).any(axis=1))
-    moved = _straightened(motion.translation, missing) if translation else None
+    along = translation and chosen["search_radius"] is not None
+    moved = _straightened(motion.translation, missing) if along else None
     rotations, moved = nonlocal_pose_means.with_translation(motion.rotations, moved, **chosen)
     if moved is None:
         return motion.replace(rotations=rotations)

@@ -540,3 +540,15 @@ def test_a_long_call_ends_at_ctrl_c(chart, neighbors):
     assert out == ""
     assert errors.rstrip().endswith("KeyboardInterrupt")
     assert child.returncode != 0
+
+
+def test_the_whole_clip_leaves_the_translation_alone():
+    rng = np.random.default_rng(3)
+    arm = qf.Skeleton(["shoulder", "elbow"], [-1, 0], [[0.0, 0, 0], [0, -30, 0]])
+    rotations = qf.exp(0.1 * rng.standard_normal((60, 2, 3)))
+    motion = qf.Motion(rotations, rng.standard_normal((60, 3)), fps=30, skeleton=arm)
+    local = qf.denoise(motion, bandwidth=1.0)
+    anywhere = qf.denoise(motion, bandwidth=1.0, search_radius=None)
+    assert not np.allclose(local.translation, motion.translation)
+    np.testing.assert_array_equal(anywhere.translation, motion.translation)
+    assert not np.allclose(anywhere.rotations, motion.rotations)

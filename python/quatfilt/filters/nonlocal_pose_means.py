@@ -69,7 +69,8 @@ def nonlocal_pose_means(
         x̂_t     = Σ_s f(t, s)·x_s / Σ_s f(t, s)
 
     where ``‖·‖²`` is the mean square over the patch's frames and coordinates. What repeats is averaged over its
-    repetitions, and what happens once, such as the impact of a foot, is left alone.
+    repetitions, what happens once keeps more of its shape than under a filter of fixed width. Impacts are rounded all the
+    same, the more the stronger the noise.
 
     Parameters
     ----------
