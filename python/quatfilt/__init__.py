@@ -10,8 +10,10 @@ from quatfilt._backend import get_backend, get_num_threads, set_num_threads, sim
 from quatfilt._core import is_debug_build as _is_debug_build
 from quatfilt.denoise import denoise
 from quatfilt.errors import FileAccessError, FileFormatError, QuatfiltError
+from quatfilt.filters.bilateral import bilateral
 from quatfilt.filters.gaps import fill_gaps
 from quatfilt.filters.nonlocal_pose_means import nonlocal_pose_means
+from quatfilt.filters.orientation_filter import orientation_filter
 from quatfilt.formats.files import read_motion, write_motion
 from quatfilt.motion import metrics
 from quatfilt.motion.motion import Motion
@@ -38,6 +40,7 @@ __all__ = [
     "Skeleton",
     "add_gaussian_noise",
     "add_impulse_noise",
+    "bilateral",
     "conjugate",
     "continuous",
     "denoise",
@@ -53,6 +56,7 @@ __all__ = [
     "noise_level",
     "nonlocal_pose_means",
     "normalize",
+    "orientation_filter",
     "read_motion",
     "resample",
     "set_num_threads",

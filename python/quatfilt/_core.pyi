@@ -7,6 +7,7 @@ from quatfilt._typing import Array, Mask
 
 __all__ = [
     "FormatError",
+    "bilateral",
     "conjugate",
     "continuous",
     "continuous_euler",
@@ -24,6 +25,7 @@ __all__ = [
     "noise_level",
     "nonlocal_pose_means",
     "normalize",
+    "orientation_filter",
     "read_amc",
     "read_asf",
     "read_bvh",
@@ -34,6 +36,19 @@ __all__ = [
     "to_euler",
     "write_bvh",
 ]
+
+# filters/bilateral
+def bilateral(
+    q: Array,
+    translation: Array | None,
+    radius: int,
+    sigma_time: float,
+    sigma_angle: NDArray[np.float64],
+    kernel: str,
+    iterations: int,
+    boundary: str,
+    /,
+) -> tuple[Array, Array | None]: ...
 
 # filters/gaps
 def fill_gaps(q: Array, max_gap: int, /) -> tuple[Array, Mask]: ...
@@ -54,6 +69,11 @@ def nonlocal_pose_means(
     lookahead: int,
     /,
 ) -> tuple[Array, Array | None]: ...
+
+# filters/orientation_filter
+def orientation_filter(
+    q: Array, mask: NDArray[np.float64], iterations: int, boundary: str, /
+) -> Array: ...
 
 # formats
 class FormatError(ValueError): ...

@@ -15,6 +15,10 @@ from quatfilt._typing import Array
 _FAR_FROM_UNIT = 0.1
 """A norm that differs from 1 by more is no rounding error: such data are not unit quaternions."""
 
+_LONGEST_REACH = 5000
+"""Frames, weighted: with longer masks, or a smaller sum of their weights, rotations would move by more turns than sine
+and cosine take exactly in float32."""
+
 _WIDEST_INTEGERS = "biu"
 
 _Choice = TypeVar("_Choice", bound=str)
@@ -113,8 +117,9 @@ def number(
     above: float | None = None,
     at_least: float | None = None,
     at_most: float | None = None,
+    infinite: bool = False,
 ) -> float:
-    """Return `value` as a finite float within its bounds."""
+    """Return `value` as a float within its bounds; finite, unless it may be `infinite`."""
     expected = "a number" + _bounds(above, at_least, at_most)
     if isinstance(value, (bool, np.bool_, str)) or not np.isscalar(value):
         raise TypeError(f"{name}: expected {expected}, got {type(value).__name__}")
@@ -122,7 +127,7 @@ def number(
         result = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         raise TypeError(f"{name}: expected {expected}, got {type(value).__name__}") from None
-    if not math.isfinite(result) or not _within(result, above, at_least, at_most):
+    if math.isnan(result) or not (infinite or math.isfinite(result)) or not _within(result, above, at_least, at_most):
         raise ValueError(f"{name}: expected {expected}, got {value!s}")
     return result
 
@@ -154,17 +159,34 @@ def per_joint(
     above: float | None = None,
     at_least: float | None = None,
     at_most: float | None = None,
+    infinite: bool = False,
 ) -> NDArray[np.float64]:
     """Return a number, or one number per joint, as a float64 array ``(joints,)``."""
+    bounds = {"above": above, "at_least": at_least, "at_most": at_most}
     if np.isscalar(value):
-        return np.full(joints, number(value, name, above=above, at_least=at_least, at_most=at_most))
+        return np.full(joints, number(value, name, **bounds, infinite=infinite))
     array = floats(value, name).astype(np.float64)
     if array.ndim == 0:
-        return np.full(joints, number(array.item(), name, above=above, at_least=at_least, at_most=at_most))
+        return np.full(joints, number(array.item(), name, **bounds, infinite=infinite))
     if array.shape != (joints,):
         raise ValueError(f"{name}: expected a number or one per joint, shape ({joints},), got {array.shape}")
     for joint, one in enumerate(array):
-        number(one, f"{name}[{joint}]", above=above, at_least=at_least, at_most=at_most)
+        number(one, f"{name}[{joint}]", **bounds, infinite=infinite)
+    return array
+
+
+def mask(value: Any, name: str) -> NDArray[np.float64]:
+    """Return `value` as weights ``(2k + 1,)``, the largest of them 1 or −1."""
+    array = floats(value, name).astype(np.float64)
+    if array.ndim != 1 or len(array) % 2 == 0:
+        raise ValueError(f"{name}: expected an odd number of weights, shape (2k + 1,), got {array.shape}")
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name}: expected finite weights")
+    largest = np.abs(array).max()
+    array = array / (largest or 1)
+    reach = np.abs(array) @ np.abs(np.arange(len(array)) - len(array) // 2)
+    if reach > _LONGEST_REACH * abs(array.sum()) or largest == 0:
+        raise ValueError(f"{name}: expected weights whose sum is not near 0, got {array.sum() * largest:g}")
     return array
 
 

@@ -7,11 +7,18 @@ from numpy.typing import ArrayLike
 
 from quatfilt import _validation
 from quatfilt._typing import Array, Mask
-from quatfilt.filters import nonlocal_pose_means
+from quatfilt.filters import bilateral, nonlocal_pose_means
 from quatfilt.motion.motion import Motion
 
-METHODS = ("auto", "nonlocal_pose_means")
+METHODS = ("auto", "nonlocal_pose_means", "bilateral")
 """What `denoise` can run; "auto" is the best that this version has."""
+
+
+_FILTERS: dict[str, tuple[Any, Any]] = {
+    "nonlocal_pose_means": (nonlocal_pose_means.nonlocal_pose_means, nonlocal_pose_means.with_translation),
+    "bilateral": (bilateral.bilateral, bilateral.with_translation),
+}
+"""Each method's filter of rotations, and of rotations with the translation of the root."""
 
 
 @overload
@@ -35,7 +42,7 @@ def denoise(
     ----------
     motion_or_rotations : Motion or array_like, shape (frames, joints, 4) or (frames, 4)
         What to clean. Missing samples are filled in, unless ``gaps=`` says otherwise.
-    method : {"auto", "nonlocal_pose_means"}, default "auto"
+    method : {"auto", "nonlocal_pose_means", "bilateral"}, default "auto"
         The filter. "auto" is `nonlocal_pose_means` with a bandwidth from the estimated noise.
     translation : bool, default True
         Whether a motion's root translation is filtered too, with the weights of its poses; gaps in it are then filled
@@ -55,7 +62,7 @@ def denoise(
 
     See Also
     --------
-    nonlocal_pose_means : The filter, its options and its cost.
+    nonlocal_pose_means, bilateral : The filters, their options and their cost.
 
     Examples
     --------
@@ -66,23 +73,26 @@ def denoise(
     >>> qf.denoise(noisy).shape
     (240, 4)
     """
-    _validation.choice(method, "method", METHODS)
+    name = _validation.choice(method, "method", METHODS)
+    name = "nonlocal_pose_means" if name == "auto" else name
+    run, with_translation = _FILTERS[name]
     if not isinstance(translation, (bool, np.bool_)):
         raise TypeError(f"translation: expected True or False, got {type(translation).__name__}")
-    defaults = cast("dict[str, Any]", nonlocal_pose_means.nonlocal_pose_means.__kwdefaults__)
-    unknown = [name for name in options if name not in defaults]
+    defaults = cast("dict[str, Any]", run.__kwdefaults__)
+    unknown = [option for option in options if option not in defaults]
     if unknown:
         raise TypeError(
-            f"{unknown[0]}: expected an option of nonlocal_pose_means ({', '.join(defaults)}), got this name"
+            f"{unknown[0]}: expected an option of {name} ({', '.join(defaults)}), got this name"
         )
     if not isinstance(motion_or_rotations, Motion):
-        return nonlocal_pose_means.nonlocal_pose_means(motion_or_rotations, **options)
+        return run(motion_or_rotations, **options)
     motion = motion_or_rotations
     chosen = {**defaults, "fps": motion.fps, **options}
     missing: Mask = np.asarray(np.isnan(motion.translation).any(axis=1))
-    along = translation and chosen["search_radius"] is not None
+    # The bilateral filter has no `search_radius`: its window is always near in time.
+    along = translation and chosen.get("search_radius", 0) is not None
     moved = _straightened(motion.translation, missing) if along else None
-    rotations, moved = nonlocal_pose_means.with_translation(motion.rotations, moved, **chosen)
+    rotations, moved = with_translation(motion.rotations, moved, **chosen)
     if moved is None:
         return motion.replace(rotations=rotations)
     if chosen["gaps"] == "keep":

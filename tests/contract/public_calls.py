@@ -47,6 +47,7 @@ def with_gaps(q):
 CALLS = {
     "add_gaussian_noise": lambda a, _b, _v: qf.add_gaussian_noise(a, sigma=0.1, rng=1),
     "add_impulse_noise": lambda a, _b, _v: qf.add_impulse_noise(a, probability=0.1, rng=1),
+    "bilateral": lambda a, _b, _v: qf.bilateral(with_gaps(a), sigma_angle=1.0, iterations=2),
     "conjugate": lambda a, _b, _v: qf.conjugate(a),
     "continuous": lambda a, _b, _v: qf.continuous(with_gaps(a)),
     "denoise": lambda a, _b, _v: qf.denoise(with_gaps(a)),
@@ -59,6 +60,7 @@ CALLS = {
     "noise_level": lambda a, _b, _v: qf.noise_level(with_gaps(a)),
     "nonlocal_pose_means": lambda a, _b, _v: qf.nonlocal_pose_means(with_gaps(a), bandwidth=1.0),
     "normalize": lambda a, _b, _v: qf.normalize(2 * a),
+    "orientation_filter": lambda a, _b, _v: qf.orientation_filter(with_gaps(a), [1, 2, 3, 2, 1]),
     "resample": lambda a, _b, _v: qf.resample(a, fps=30, new_fps=31.7),
     "slerp": lambda a, _b, _v: qf.slerp(a, np.arange(FRAMES), np.linspace(0, FRAMES - 1, 10_001)),
 }

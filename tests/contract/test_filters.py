@@ -16,8 +16,10 @@ from quatfilt.denoise import METHODS
 from scipy.spatial.transform import Rotation
 
 FILTERS = {
+    "bilateral": qf.bilateral,
     "denoise": qf.denoise,
     "nonlocal_pose_means": qf.nonlocal_pose_means,
+    "orientation_filter": functools.partial(qf.orientation_filter, mask=[1, 2, 4, 2, 1]),
 }
 """From clip to clip, with the options that all filters have in common."""
 

@@ -9,8 +9,10 @@ axis `u`, and `q` and `−q` are the same rotation. A *missing* sample is a quat
 or with four zeros.
 """
 
+from quatfilt._reference.filters.bilateral import bilateral
 from quatfilt._reference.filters.gaps import fill_gaps
 from quatfilt._reference.filters.nonlocal_pose_means import nonlocal_pose_means
+from quatfilt._reference.filters.orientation_filter import orientation_filter
 from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
 from quatfilt._reference.noise.noise import noise_level
 from quatfilt._reference.rotations.euler import continuous_euler, from_euler, to_euler
@@ -28,6 +30,7 @@ from quatfilt._reference.rotations.quaternion import (
 from quatfilt._reference.rotations.resample import slerp
 
 __all__ = [
+    "bilateral",
     "conjugate",
     "continuous",
     "continuous_euler",
@@ -43,6 +46,7 @@ __all__ = [
     "noise_level",
     "nonlocal_pose_means",
     "normalize",
+    "orientation_filter",
     "scan",
     "slerp",
     "to_euler",

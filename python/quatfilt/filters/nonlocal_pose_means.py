@@ -10,14 +10,13 @@ from quatfilt import _validation
 from quatfilt._backend import ops
 from quatfilt._typing import Array
 from quatfilt.filters import _spans
+from quatfilt.filters.boundary import BOUNDARIES, Boundary
 
 Chart = Literal["mean", "identity", "local"]
-Boundary = Literal["nearest", "mirror", "linear"]
 Weights = Literal["pose", "joint"]
 Distance = Literal["mean", "sum"]
 
 _CHARTS: tuple[Chart, ...] = ("mean", "identity", "local")
-_BOUNDARIES: tuple[Boundary, ...] = ("nearest", "mirror", "linear")
 _WEIGHTS: tuple[Weights, ...] = ("pose", "joint")
 _DISTANCES: tuple[Distance, ...] = ("mean", "sum")
 
@@ -227,7 +226,7 @@ def _checked(
         _validation.choice(weights, "weights", _WEIGHTS),
         _ALL if neighbors is None else _validation.integer(neighbors, "neighbors", at_least=1, at_most=_MOST),
         _validation.choice(chart, "chart", _CHARTS),
-        _validation.choice(boundary, "boundary", _BOUNDARIES),
+        _validation.choice(boundary, "boundary", BOUNDARIES),
         _NO_LIMIT
         if lookahead is None
         else _validation.integer(lookahead, "lookahead", at_least=0, at_most=_MOST),

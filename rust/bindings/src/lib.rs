@@ -13,9 +13,13 @@ mod threads;
 #[pyo3::pymodule]
 mod _core {
     #[pymodule_export]
+    use super::filters::bilateral::bilateral;
+    #[pymodule_export]
     use super::filters::gaps::fill_gaps;
     #[pymodule_export]
     use super::filters::nonlocal_pose_means::nonlocal_pose_means;
+    #[pymodule_export]
+    use super::filters::orientation_filter::orientation_filter;
     #[pymodule_export]
     use super::formats::FormatError;
     #[pymodule_export]

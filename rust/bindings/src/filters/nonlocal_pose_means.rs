@@ -1,11 +1,10 @@
 //! Non-local pose means.
 
+use super::names::{self, named};
 use crate::array::{by_dtype, elements, input, output, run_interruptible};
 use numpy::{Element, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use quatfilt_core::filters::nonlocal_pose_means::{Chart, Distance, NonlocalPoseMeans, Translation, Weights};
-use quatfilt_core::window::Boundary;
 use quatfilt_core::{ClipMut, ClipView, Real};
 
 /// Filters rotations `(frames, joints, 4)` and, with the same weights, a translation `(frames, 3)`.
@@ -42,23 +41,10 @@ pub(crate) fn nonlocal_pose_means(
             chart,
             &[("mean", Chart::Mean), ("identity", Chart::Identity), ("local", Chart::Local)],
         )?,
-        boundary: named(
-            "boundary",
-            boundary,
-            &[("mirror", Boundary::Mirror), ("linear", Boundary::Linear), ("nearest", Boundary::Nearest)],
-        )?,
+        boundary: names::boundary(boundary)?,
         lookahead: usize::try_from(lookahead).ok(),
     };
     by_dtype!(q, T => typed::<T>(py, &filter, q, translation, confidence))
-}
-
-/// The value that a name stands for.
-fn named<V: Copy>(argument: &str, name: &str, values: &[(&str, V)]) -> PyResult<V> {
-    values
-        .iter()
-        .find(|(known, _)| *known == name)
-        .map(|(_, value)| *value)
-        .ok_or_else(|| PyValueError::new_err(format!("{argument}: unknown name {name:?}")))
 }
 
 fn typed<T: Real + Element>(

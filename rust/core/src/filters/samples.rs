@@ -1,13 +1,15 @@
 //! From quaternions to planes and back.
 
-use super::LANE;
 use crate::Real;
 use crate::rotations::quaternion::{dot, exp_one, log_one, product};
 use crate::simd::multiversion;
 
+/// Frames that a loop over lags keeps at hand: four vectors of float32 at the widest level.
+pub(super) const LANE: usize = 64;
+
 multiversion! {
     /// Copies samples, turning the signs of those that are marked.
-    pub(in super::super) fn copy_signed<T: Real>(samples: &[[T; 4]], flips: &[u8], out: &mut [[T; 4]]) {
+    pub(super) fn copy_signed<T: Real>(samples: &[[T; 4]], flips: &[u8], out: &mut [[T; 4]]) {
         let n = samples.len();
         let (flips, out) = (&flips[..n], &mut out[..n]);
         for i in 0..n {
@@ -20,7 +22,7 @@ multiversion! {
 
 multiversion! {
     /// Half rotation vectors of `m⁻¹q` for up to [`LANE`] samples of one joint, `step` samples apart.
-    pub(in super::super) fn load_fixed<T: Real>(
+    pub(super) fn load_fixed<T: Real>(
         samples: &[[T; 4]], step: usize, inverse: [T; 4],
         x: &mut [T], y: &mut [T], z: &mut [T],
     ) {
@@ -41,7 +43,7 @@ multiversion! {
 
 multiversion! {
     /// Unit quaternions of up to [`LANE`] samples of one joint, `step` samples apart.
-    pub(in super::super) fn load_local<T: Real>(
+    pub(super) fn load_local<T: Real>(
         samples: &[[T; 4]], step: usize,
         w: &mut [T], x: &mut [T], y: &mut [T], z: &mut [T],
     ) {
@@ -79,7 +81,7 @@ fn gather<T: Real>(samples: &[[T; 4]], step: usize) -> [[T; LANE]; 4] {
 
 multiversion! {
     /// Writes `sign·m·exp(v)` of [`LANE`] frames to every `step`-th sample.
-    pub(in super::super) fn store_fixed<T: Real>(v: [&[T]; 3], centre: [T; 4], sign: T, out: &mut [[T; 4]], step: usize) {
+    pub(super) fn store_fixed<T: Real>(v: [&[T]; 3], centre: [T; 4], sign: T, out: &mut [[T; 4]], step: usize) {
         let centre = [centre[0] * sign, centre[1] * sign, centre[2] * sign, centre[3] * sign];
         let [x, y, z] = v.map(|v| &v[..LANE]);
         let mut q = [[T::ZERO; LANE]; 4];
@@ -96,7 +98,7 @@ multiversion! {
 
 multiversion! {
     /// Writes `sign·q·exp(v)` of [`LANE`] frames to every `step`-th sample.
-    pub(in super::super) fn store_local<T: Real>(v: [&[T]; 3], base: [&[T]; 4], sign: T, out: &mut [[T; 4]], step: usize) {
+    pub(super) fn store_local<T: Real>(v: [&[T]; 3], base: [&[T]; 4], sign: T, out: &mut [[T; 4]], step: usize) {
         let [x, y, z] = v.map(|v| &v[..LANE]);
         let base = base.map(|base| &base[..LANE]);
         let mut q = [[T::ZERO; LANE]; 4];
@@ -126,7 +128,7 @@ fn scatter<T: Real>(q: &[[T; LANE]; 4], out: &mut [[T; 4]], step: usize) {
 
 multiversion! {
     /// Whether the inner product of any pair is negative.
-    pub(in super::super) fn turns<T: Real>(before: &[[T; 4]], after: &[[T; 4]]) -> bool {
+    pub(super) fn turns<T: Real>(before: &[[T; 4]], after: &[[T; 4]]) -> bool {
         /// Pairs at once: one vector of float32 at the widest level.
         const PAIRS: usize = 16;
         let mut least = [T::ZERO; PAIRS];
