@@ -1,11 +1,14 @@
-//! Filters: non-local pose means by what its cost depends on, and gaps.
+//! Filters: non-local pose means by what its cost depends on, orientation filters, and gaps.
 
 use quatfilt_benches::clips;
 use quatfilt_benches::settings;
 use quatfilt_benches::timer::Timer;
+use quatfilt_core::filters::bilateral::{Bilateral, Kernel};
 use quatfilt_core::filters::gaps;
 use quatfilt_core::filters::nonlocal_pose_means::{Chart, NonlocalPoseMeans, Weights};
+use quatfilt_core::filters::orientation_filter::OrientationFilter;
 use quatfilt_core::parallel::Interrupt;
+use quatfilt_core::window::Boundary;
 use quatfilt_core::{ClipMut, ClipView, Error, Real};
 
 fn main() -> Result<(), Error> {
@@ -17,6 +20,8 @@ fn main() -> Result<(), Error> {
     for size in timer.sizes(&[10_000]) {
         variations::<f32>(&mut timer, size)?;
         variations::<f64>(&mut timer, size)?;
+        orientation_filters::<f32>(&mut timer, size)?;
+        orientation_filters::<f64>(&mut timer, size)?;
         fill_gaps::<f32>(&mut timer, size)?;
         fill_gaps::<f64>(&mut timer, size)?;
     }
@@ -58,6 +63,30 @@ fn variations<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Er
         })?;
     }
     Ok(())
+}
+
+/// One pass over a window of nine frames: the same mask for all of them, and one of its own for each.
+fn orientation_filters<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
+    let (frames, joints) = size;
+    let q = clips::rotations::<T>(frames, joints, 1)?;
+    let clip = ClipView::new(&q, frames, joints)?;
+    let mut out = vec![T::ZERO; q.len()];
+    let interrupt = Interrupt::new();
+    let filter = OrientationFilter { mask: vec![1.0; 9], iterations: 1, boundary: Boundary::Mirror };
+    timer.threads::<T, _, _>("filters/orientation_filter", size, || {
+        filter.filter(clip, ClipMut::new(&mut out, frames, joints)?, &interrupt)
+    })?;
+    let filter = Bilateral {
+        radius: 4,
+        sigma_time: 1.0,
+        sigma_angle: vec![0.2; joints],
+        kernel: Kernel::Gaussian,
+        iterations: 1,
+        boundary: Boundary::Mirror,
+    };
+    timer.threads::<T, _, _>("filters/bilateral", size, || {
+        filter.filter(clip, None, ClipMut::new(&mut out, frames, joints)?, &interrupt)
+    })
 }
 
 fn fill_gaps<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {

@@ -127,7 +127,11 @@ def number(
         result = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):
         raise TypeError(f"{name}: expected {expected}, got {type(value).__name__}") from None
-    if math.isnan(result) or not (infinite or math.isfinite(result)) or not _within(result, above, at_least, at_most):
+    if (
+        math.isnan(result)
+        or not (infinite or math.isfinite(result))
+        or not _within(result, above, at_least, at_most)
+    ):
         raise ValueError(f"{name}: expected {expected}, got {value!s}")
     return result
 

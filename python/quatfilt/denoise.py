@@ -81,11 +81,9 @@ def denoise(
     defaults = cast("dict[str, Any]", run.__kwdefaults__)
     unknown = [option for option in options if option not in defaults]
     if unknown:
-        raise TypeError(
-            f"{unknown[0]}: expected an option of {name} ({', '.join(defaults)}), got this name"
-        )
+        raise TypeError(f"{unknown[0]}: expected an option of {name} ({', '.join(defaults)}), got this name")
     if not isinstance(motion_or_rotations, Motion):
-        return run(motion_or_rotations, **options)
+        return cast("Array", run(motion_or_rotations, **options))
     motion = motion_or_rotations
     chosen = {**defaults, "fps": motion.fps, **options}
     missing: Mask = np.asarray(np.isnan(motion.translation).any(axis=1))

@@ -19,9 +19,19 @@ FILTERS = {
     "bilateral": qf.bilateral,
     "denoise": qf.denoise,
     "nonlocal_pose_means": qf.nonlocal_pose_means,
-    "orientation_filter": functools.partial(qf.orientation_filter, mask=[1, 2, 4, 2, 1]),
+    "orientation_filter": lambda q, *more, **options: qf.orientation_filter(
+        q, [1, 2, 4, 2, 1], *more, **options
+    ),
 }
 """From clip to clip, with the options that all filters have in common."""
+
+OPTIONS = {
+    "bilateral": qf.bilateral.__kwdefaults__,
+    "denoise": qf.nonlocal_pose_means.__kwdefaults__,
+    "nonlocal_pose_means": qf.nonlocal_pose_means.__kwdefaults__,
+    "orientation_filter": qf.orientation_filter.__kwdefaults__,
+}
+"""The options of each filter."""
 
 every_filter = pytest.mark.parametrize("name", FILTERS)
 
@@ -332,6 +342,20 @@ POSITIVE = "expected a number above 0"
 NOT_NEGATIVE = "expected a number of at least 0"
 
 WRONG_OPTIONS = [
+    ("radius", -1, ValueError, "expected an integer of at least 0 and at most 5000, got -1"),
+    ("radius", 5001, ValueError, "expected an integer of at least 0 and at most 5000, got 5001"),
+    ("radius", 4.0, TypeError, "expected an integer of at least 0 and at most 5000, got float"),
+    ("sigma_time", 0, ValueError, f"{POSITIVE}, got 0"),
+    ("sigma_time", math.inf, ValueError, f"{POSITIVE}, got inf"),
+    ("sigma_time", [1.0], TypeError, f"{POSITIVE}, got list"),
+    ("sigma_angle", 0, ValueError, f"{POSITIVE}, got 0"),
+    ("sigma_angle", math.nan, ValueError, f"{POSITIVE}, got nan"),
+    ("sigma_angle", -math.inf, ValueError, f"{POSITIVE}, got -inf"),
+    ("sigma_angle", [0.1, 0.1], ValueError, "expected a number or one per joint, shape (3,), got (2,)"),
+    ("sigma_angle", [0.1, np.nan, 0.1], ValueError, f"[1]{{}}{POSITIVE}, got nan"),
+    ("kernel", "box", ValueError, "expected one of 'gaussian', 'printed', 'classic', got 'box'"),
+    ("iterations", 0, ValueError, "expected an integer of at least 1, got 0"),
+    ("iterations", True, TypeError, "expected an integer of at least 1, got bool"),
     ("search_radius", 0, ValueError, "expected an integer of at least 1 and at most 100000, got 0"),
     ("search_radius", -3, ValueError, "expected an integer of at least 1 and at most 100000, got -3"),
     (
@@ -396,8 +420,10 @@ WRONG_OPTIONS = [
 ]
 
 
-@pytest.mark.parametrize(("option", "value", "kind", "message"), WRONG_OPTIONS)
-@every_filter
+@pytest.mark.parametrize(
+    ("name", "option", "value", "kind", "message"),
+    [(name, *case) for name in FILTERS for case in WRONG_OPTIONS if case[0] in OPTIONS[name]],
+)
 def test_wrong_options(name, option, value, kind, message):
     said = refused(kind, FILTERS[name], clip(), **{option: value})
     expected = option + message.replace("{}", ": ") if message.startswith("[") else f"{option}: {message}"
@@ -406,9 +432,21 @@ def test_wrong_options(name, option, value, kind, message):
 
 @pytest.mark.parametrize("frames", [0, 1])
 @pytest.mark.parametrize(
-    ("option", "value"), [("search_radius", 0), ("bandwidth", -1), ("gaps", "drop"), ("fps", 0)]
+    ("name", "option", "value"),
+    [
+        (name, option, value)
+        for name in FILTERS
+        for option, value in [
+            ("search_radius", 0),
+            ("bandwidth", -1),
+            ("sigma_angle", -1),
+            ("iterations", 0),
+            ("gaps", "drop"),
+            ("fps", 0),
+        ]
+        if option in OPTIONS[name]
+    ],
 )
-@every_filter
 def test_wrong_options_are_refused_for_the_shortest_clips_too(name, option, value, frames):
     assert refused(ValueError, FILTERS[name], clip(frames=frames), **{option: value}).startswith(
         f"{option}: "
@@ -419,6 +457,38 @@ def test_wrong_options_are_refused_for_the_shortest_clips_too(name, option, valu
 def test_options_are_keyword_only(name):
     with pytest.raises(TypeError, match="positional argument"):
         FILTERS[name](clip(), 10)
+
+
+@pytest.mark.parametrize(
+    ("mask", "kind", "message"),
+    [
+        ([], ValueError, "mask: expected an odd number of weights, shape (2k + 1,), got (0,)"),
+        ([1, 1], ValueError, "mask: expected an odd number of weights, shape (2k + 1,), got (2,)"),
+        (1.0, ValueError, "mask: expected an odd number of weights, shape (2k + 1,), got ()"),
+        ([[1.0]], ValueError, "mask: expected an odd number of weights, shape (2k + 1,), got (1, 1)"),
+        ([1, math.nan, 1], ValueError, "mask: expected finite weights"),
+        ([1, 0, -1], ValueError, "mask: expected weights whose sum is not near 0, got 0"),
+        ([0], ValueError, "mask: expected weights whose sum is not near 0, got 0"),
+        ([1, 1e-9, -1], ValueError, "mask: expected weights whose sum is not near 0, got 1e-09"),
+        ("binomial", TypeError, "mask: expected real numbers, got dtype <U8"),
+    ],
+)
+def test_wrong_masks(mask, kind, message):
+    assert refused(kind, qf.orientation_filter, clip(), mask) == message
+
+
+@pytest.mark.parametrize("scale", [1, -3, 1e300, 1e-300])
+def test_masks_in_any_scale(scale):
+    q = clip()
+    result = qf.orientation_filter(q, scale * np.array([1.0, 2, 1]))
+    assert clips.angles(result, qf.orientation_filter(q, [1, 2, 1])).max() < tolerances.ALGEBRA
+
+
+def test_one_scale_of_angles_per_joint():
+    q = clip()
+    result = qf.bilateral(q, sigma_angle=[0.1, 0.2, math.inf])
+    for joint, sigma in enumerate([0.1, 0.2, math.inf]):
+        np.testing.assert_array_equal(result[:, joint], qf.bilateral(q[:, joint], sigma_angle=sigma))
 
 
 def test_numbers_of_numpy_and_one_bandwidth_per_joint():
@@ -471,6 +541,25 @@ def test_options_reach_the_filter():
     q = clip()
     options = {"search_radius": 4, "patch_radius": 2, "bandwidth": 0.1, "chart": "local"}
     np.testing.assert_array_equal(qf.denoise(q, **options), qf.nonlocal_pose_means(q, **options))
+
+
+def test_options_reach_the_bilateral_filter():
+    q = clip()
+    options = {"radius": 2, "sigma_angle": 0.1, "kernel": "classic", "iterations": 3}
+    np.testing.assert_array_equal(qf.denoise(q, method="bilateral", **options), qf.bilateral(q, **options))
+    message = refused(TypeError, qf.denoise, q, method="bilateral", bandwidth=3)
+    assert message.startswith("bandwidth: expected an option of bilateral (radius, sigma_time, ")
+
+
+@pytest.mark.parametrize("switch", [True, False])
+def test_the_bilateral_filter_of_a_motion(switch):
+    q = clip()
+    path = clips.path(np.random.default_rng(1), FRAMES)
+    motion = qf.Motion(q, path, fps=120.0, skeleton=skeleton(3))
+    result = qf.denoise(motion, method="bilateral", translation=switch)
+    np.testing.assert_array_equal(result.rotations, qf.bilateral(q))
+    jerk = [np.abs(np.diff(x, n=3, axis=0)).mean() for x in (path, result.translation)]
+    assert jerk[1] < jerk[0] / 2 if switch else jerk[1] == jerk[0]
 
 
 def skeleton(joints):

@@ -37,7 +37,7 @@ def orientation_filter(
     q : array_like, shape (frames, joints, 4) or (frames, 4)
         Unit quaternions along time. NaN or four zeros are missing samples.
     mask : array_like, shape (2k + 1,)
-        Weights of the frames from `k` before to `k` after, in any scale: binomial, Gaussian, Savitzky–Golay, …
+        Weights of the frames from `k` before to `k` after, in any scale: binomial, Gaussian, of Savitzky and Golay, …
         Their sum is not near 0.
     iterations : int, default 1
         How often the filter is applied.
@@ -84,9 +84,7 @@ def orientation_filter(
     >>> error(clean) < 0.6 * error(noisy)
     True
     """
-    clip = _spans.prepare(
-        q, gaps=gaps, max_gap=max_gap, fps=fps, confidence=None, scalar_first=scalar_first
-    )
+    clip = _spans.prepare(q, gaps=gaps, max_gap=max_gap, fps=fps, confidence=None, scalar_first=scalar_first)
     options = (
         _validation.mask(mask, "mask"),
         _validation.integer(iterations, "iterations", at_least=1),

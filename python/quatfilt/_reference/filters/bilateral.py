@@ -96,7 +96,7 @@ def weights(
     result = np.empty((*q.shape[:2], 2 * radius + 1))
     with np.errstate(over="ignore", divide="ignore"):
         for j in range(2 * radius + 1):
-            r = abs(j - radius)
+            r = np.float64(abs(j - radius))
             time = (r / sigma_time) ** 2 / 2 if kernel == "classic" else r / sigma_time / sigma_time / 2
             theta = geodesic_distance(q, path[j : j + frames]) if r else np.zeros(q.shape[:2])
             scaled = theta / sigma_angle

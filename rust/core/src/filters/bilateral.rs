@@ -195,7 +195,7 @@ multiversion! {
         let n = sums.len();
         let total = &total[..n];
         for i in 0..n {
-            sums[i] = sums[i] / total[i];
+            sums[i] /= total[i];
         }
     }
 }
