@@ -99,15 +99,17 @@ pub(super) fn run<T: Real>(
         }
         None => (&[][..], &mut [][..]),
     };
-    quaternion::normalize(clip.data(), out)?;
-    moved.copy_from_slice(values);
-    if frames < 2 || joints == 0 {
-        return Ok(());
+    if frames < 2 || joints == 0 || iterations == 0 {
+        moved.copy_from_slice(values);
+        return quaternion::normalize(clip.data(), out);
     }
-    let (mut before, mut moved_before) = (vec![T::ZERO; out.len()], vec![T::ZERO; moved.len()]);
-    for _ in 0..iterations {
-        before.copy_from_slice(out);
-        moved_before.copy_from_slice(moved);
+    pass(filter, boundary, clip, values, out, moved, interrupt)?;
+    let (mut before, mut moved_before) = (Vec::new(), Vec::new());
+    for _ in 1..iterations {
+        before.clear();
+        before.extend_from_slice(out);
+        moved_before.clear();
+        moved_before.extend_from_slice(moved);
         pass(
             filter,
             boundary,
@@ -128,7 +130,7 @@ pub(super) fn run<T: Real>(
     make_continuous(out, joints)
 }
 
-/// One pass over a clip of unit quaternions and a translation, which may be empty.
+/// One pass over a clip and a translation, which may be empty.
 fn pass<T: Real>(
     filter: &impl Local<T>,
     boundary: Boundary,
