@@ -14,6 +14,7 @@ from quatfilt.filters.bilateral import bilateral
 from quatfilt.filters.gaps import fill_gaps
 from quatfilt.filters.nonlocal_pose_means import nonlocal_pose_means
 from quatfilt.filters.orientation_filter import orientation_filter
+from quatfilt.filters.stream.nonlocal_pose_means import NonlocalPoseMeansStream
 from quatfilt.formats.files import read_motion, write_motion
 from quatfilt.motion import metrics
 from quatfilt.motion.motion import Motion
@@ -36,6 +37,7 @@ __all__ = [
     "FileAccessError",
     "FileFormatError",
     "Motion",
+    "NonlocalPoseMeansStream",
     "QuatfiltError",
     "Skeleton",
     "add_gaussian_noise",

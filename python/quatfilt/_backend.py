@@ -33,6 +33,11 @@ def files() -> ModuleType:
     return _core
 
 
+def streams() -> ModuleType:
+    """Return the functions that make streams: the core's with every backend, for the filter of the whole clip defines them."""
+    return _core
+
+
 class use_backend:  # noqa: N801 - used as a function, and as a context manager
     """Choose who computes, for the whole process.
 
@@ -169,5 +174,6 @@ __all__ = [
     "ops",
     "set_num_threads",
     "simd_level",
+    "streams",
     "use_backend",
 ]

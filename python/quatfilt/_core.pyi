@@ -1,4 +1,4 @@
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,6 +7,7 @@ from quatfilt._typing import Array, Mask
 
 __all__ = [
     "FormatError",
+    "PoseStream",
     "bilateral",
     "conjugate",
     "continuous",
@@ -24,6 +25,7 @@ __all__ = [
     "multiply",
     "noise_level",
     "nonlocal_pose_means",
+    "nonlocal_pose_means_stream",
     "normalize",
     "orientation_filter",
     "read_amc",
@@ -72,6 +74,30 @@ def nonlocal_pose_means(
 
 # filters/orientation_filter
 def orientation_filter(q: Array, mask: NDArray[np.float64], iterations: int, boundary: str, /) -> Array: ...
+
+# filters/stream
+@final
+class PoseStream:
+    @property
+    def latency(self) -> int: ...
+    def push(
+        self, pose: NDArray[np.float64], confidence: NDArray[np.float64] | None, /
+    ) -> NDArray[np.float64] | None: ...
+    def flush(self, /) -> NDArray[np.float64]: ...
+
+# filters/stream/nonlocal_pose_means
+def nonlocal_pose_means_stream(
+    bandwidth: NDArray[np.float64],
+    search_radius: int,
+    patch_radius: int,
+    distance: str,
+    weights: str,
+    neighbors: int,
+    chart: str,
+    boundary: str,
+    lookahead: int,
+    /,
+) -> PoseStream: ...
 
 # formats
 class FormatError(ValueError): ...

@@ -4,6 +4,8 @@ Arrays leave this module native, C-contiguous, aligned, float32 or float64, and 
 """
 
 import math
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any, TypeVar
 
 import numpy as np
@@ -95,6 +97,23 @@ def clip(value: Any, name: str = "rotations", *, scalar_first: bool = True) -> t
     return array, missing
 
 
+def pose(value: Any, like: Array | None, *, scalar_first: bool) -> Array:
+    """Return `value` as ``(joints, 4)`` or ``(4,)``: the shape and dtype of `like`, the first pose, if there was one."""
+    array = quaternions(value, "pose", scalar_first=scalar_first)
+    if array.ndim not in (1, 2):
+        raise ValueError(f"pose: expected shape (joints, 4) or (4,), got {array.shape}")
+    if like is not None and array.shape != like.shape:
+        raise ValueError(f"pose: expected shape {like.shape} as in the first push, got {array.shape}")
+    if like is not None and array.dtype != like.dtype:
+        raise TypeError(f"pose: expected dtype {like.dtype} as in the first push, got {array.dtype}")
+    rows = array.reshape(1, -1, 4)
+    _, worst, joint = _backend.ops().scan(rows)
+    if worst > _FAR_FROM_UNIT:
+        norm = math.hypot(*rows[0, joint].tolist())
+        raise ValueError(f"pose: expected unit quaternions, got norm {norm:.6g} at joint {joint}")
+    return array
+
+
 def pair(a: Array, b: Array, name_a: str, name_b: str) -> tuple[Array, Array]:
     """Return two arrays of rows broadcast against each other, of one dtype, C-contiguous."""
     dtype = np.result_type(a.dtype, b.dtype)
@@ -147,12 +166,20 @@ def integer(value: Any, name: str, *, at_least: int | None = None, at_most: int 
     return result
 
 
-def choice(value: Any, name: str, options: tuple[_Choice, ...]) -> _Choice:
-    """Return `value` if it is one of `options`."""
+def choice(
+    value: Any,
+    name: str,
+    options: tuple[_Choice, ...],
+    *,
+    elsewhere: Mapping[str, str] = MappingProxyType({}),
+) -> _Choice:
+    """Return `value` if it is one of `options`; `elsewhere` tells why what other functions take will not do here."""
     for option in options:
         if isinstance(value, str) and value == option:
             return option
-    raise ValueError(f"{name}: expected one of {', '.join(map(repr, options))}, got {value!r}")
+    reason = elsewhere.get(value) if isinstance(value, str) else None
+    expected = f"{name}: expected one of {', '.join(map(repr, options))}, got {value!r}"
+    raise ValueError(f"{expected}: {reason}" if reason else expected)
 
 
 def per_joint(
@@ -267,11 +294,27 @@ def confidence(value: ArrayLike | None, frames: int, joints: int, dtype: np.dtyp
         raise ValueError(
             f"confidence: expected shape ({frames},) or ({frames}, {joints}), got {array.shape}",
         )
-    array = np.where(np.isnan(array), 0, array)
+    return np.require(_shares(array), dtype, ("C_CONTIGUOUS", "ALIGNED"))
+
+
+def pose_confidence(value: Any, joints: int) -> NDArray[np.float64] | None:
+    """Return `value`, a number or one per joint in 0…1, as ``(joints,)``; NaN counts as 0."""
+    if value is None:
+        return None
+    array = floats(value, "confidence").astype(np.float64)
+    if array.shape not in ((), (joints,)):
+        raise ValueError(
+            f"confidence: expected a number or one per joint, shape ({joints},), got {array.shape}"
+        )
+    return np.ascontiguousarray(np.broadcast_to(_shares(array), joints))
+
+
+def _shares(confidence: NDArray[Any]) -> NDArray[Any]:
+    array = np.where(np.isnan(confidence), 0, confidence)
     if array.size and (array.min() < 0 or array.max() > 1):
         worst = array.min() if array.min() < 0 else array.max()
         raise ValueError(f"confidence: expected values from 0 to 1, got {worst}")
-    return np.require(array, dtype, ("C_CONTIGUOUS", "ALIGNED"))
+    return array
 
 
 def _bounds(above: float | None, at_least: float | None, at_most: float | None) -> str:

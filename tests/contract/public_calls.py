@@ -44,7 +44,20 @@ def with_gaps(q):
     return gaps
 
 
+STREAMED = 400
+"""Frames that are pushed one by one."""
+
+
+def streamed(stream, q):
+    """Push a clip with gaps, and return all that comes out."""
+    poses = [pose for pose in map(stream.push, with_gaps(q[:STREAMED])) if pose is not None]
+    return np.concatenate([poses, stream.flush()])
+
+
 CALLS = {
+    "NonlocalPoseMeansStream": lambda a, _b, _v: streamed(
+        qf.NonlocalPoseMeansStream(bandwidth=1.0, lookahead=7), a
+    ),
     "add_gaussian_noise": lambda a, _b, _v: qf.add_gaussian_noise(a, sigma=0.1, rng=1),
     "add_impulse_noise": lambda a, _b, _v: qf.add_impulse_noise(a, probability=0.1, rng=1),
     "bilateral": lambda a, _b, _v: qf.bilateral(with_gaps(a), sigma_angle=1.0, iterations=2),

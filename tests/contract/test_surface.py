@@ -7,10 +7,14 @@ from quatfilt import _core, _reference
 
 FILES = "reads or writes the text of a file, which is no arithmetic"
 
+STREAMS = "the reference's filter of the whole clip defines the stream"
+
 ONLY_IN_CORE = {
     "FormatError": FILES,
+    "PoseStream": STREAMS,
     "get_num_threads": "the reference has no threads",
     "is_debug_build": "the reference is not built",
+    "nonlocal_pose_means_stream": STREAMS,
     "read_amc": FILES,
     "read_asf": FILES,
     "read_bvh": FILES,

@@ -17,15 +17,15 @@ Weights = Literal["pose", "joint"]
 Distance = Literal["mean", "sum"]
 
 _CHARTS: tuple[Chart, ...] = ("mean", "identity", "local")
-_WEIGHTS: tuple[Weights, ...] = ("pose", "joint")
-_DISTANCES: tuple[Distance, ...] = ("mean", "sum")
+WEIGHTS: tuple[Weights, ...] = ("pose", "joint")
+DISTANCES: tuple[Distance, ...] = ("mean", "sum")
 
-_WHOLE_CLIP = _ALL = _NO_LIMIT = -1
+_WHOLE_CLIP = ALL = _NO_LIMIT = -1
 
 _LONGEST_RADIUS = 100_000
 """Frames: windows and patches beyond it would take memory for frames that no clip has."""
 
-_MOST = 1_000_000_000
+MOST = 1_000_000_000
 """More neighbours, and a longer lookahead, than any window has."""
 
 _NOISE_TO_BANDWIDTH = {"pose": 1.0, "joint": 1.2}
@@ -222,14 +222,14 @@ def _checked(
         if search_radius is None
         else _validation.integer(search_radius, "search_radius", at_least=1, at_most=_LONGEST_RADIUS),
         _validation.integer(patch_radius, "patch_radius", at_least=0, at_most=_LONGEST_RADIUS),
-        _validation.choice(distance, "distance", _DISTANCES),
-        _validation.choice(weights, "weights", _WEIGHTS),
-        _ALL if neighbors is None else _validation.integer(neighbors, "neighbors", at_least=1, at_most=_MOST),
+        _validation.choice(distance, "distance", DISTANCES),
+        _validation.choice(weights, "weights", WEIGHTS),
+        ALL if neighbors is None else _validation.integer(neighbors, "neighbors", at_least=1, at_most=MOST),
         _validation.choice(chart, "chart", _CHARTS),
         _validation.choice(boundary, "boundary", BOUNDARIES),
         _NO_LIMIT
         if lookahead is None
-        else _validation.integer(lookahead, "lookahead", at_least=0, at_most=_MOST),
+        else _validation.integer(lookahead, "lookahead", at_least=0, at_most=MOST),
     )
 
 
@@ -266,4 +266,15 @@ def _joint_bandwidths(
     return np.maximum(_NOISE_TO_BANDWIDTH[weights] * noise, _LEAST_BANDWIDTH)
 
 
-__all__ = ["Boundary", "Chart", "Distance", "Weights", "nonlocal_pose_means", "with_translation"]
+__all__ = [
+    "ALL",
+    "DISTANCES",
+    "MOST",
+    "WEIGHTS",
+    "Boundary",
+    "Chart",
+    "Distance",
+    "Weights",
+    "nonlocal_pose_means",
+    "with_translation",
+]

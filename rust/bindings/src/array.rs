@@ -94,7 +94,8 @@ pub(crate) fn run<R: Send>(py: Python<'_>, work: impl FnOnce() -> Result<R, Erro
     }
 }
 
-fn to_python(error: Error) -> PyErr {
+/// What Python sees of an error of the core.
+pub(crate) fn to_python(error: Error) -> PyErr {
     match error {
         Error::Interrupted => PyKeyboardInterrupt::new_err(()),
         other => PyValueError::new_err(other.to_string()),

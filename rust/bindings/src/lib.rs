@@ -1,6 +1,7 @@
 //! The module `quatfilt._core`: converts arrays, detaches from the interpreter, calls the core. No arithmetic.
 //!
-//! Each function has the name and the positional arguments of its definition in `quatfilt._reference`.
+//! Each function has the name and the positional arguments of its definition in `quatfilt._reference`; streams have none
+//! there, for the filter of the whole clip defines them.
 
 mod array;
 mod filters;
@@ -20,6 +21,10 @@ mod _core {
     use super::filters::nonlocal_pose_means::nonlocal_pose_means;
     #[pymodule_export]
     use super::filters::orientation_filter::orientation_filter;
+    #[pymodule_export]
+    use super::filters::stream::PoseStream;
+    #[pymodule_export]
+    use super::filters::stream::nonlocal_pose_means::nonlocal_pose_means_stream;
     #[pymodule_export]
     use super::formats::FormatError;
     #[pymodule_export]

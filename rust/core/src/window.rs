@@ -124,7 +124,7 @@ impl<'a, T: Real> Extended<'a, T> {
 }
 
 /// The rotation `steps` frames beyond `end`, at the angular velocity from `inner` to `end`.
-fn continued<T: Real>(end: [T; 4], inner: [T; 4], steps: usize) -> [T; 4] {
+pub(crate) fn continued<T: Real>(end: [T; 4], inner: [T; 4], steps: usize) -> [T; 4] {
     let (end, inner) = (end.map(T::to_f64), inner.map(T::to_f64));
     let step = log_short(between(inner, end));
     let length = (step[0] * step[0] + step[1] * step[1] + step[2] * step[2]).sqrt();

@@ -28,8 +28,35 @@ pub(crate) fn nonlocal_pose_means(
     boundary: &str,
     lookahead: i64,
 ) -> PyResult<(Py<PyAny>, Option<Py<PyAny>>)> {
+    let filter = filter(
+        bandwidth,
+        search_radius,
+        patch_radius,
+        distance,
+        weights,
+        neighbors,
+        chart,
+        boundary,
+        lookahead,
+    )?;
+    by_dtype!(q, T => typed::<T>(py, &filter, q, translation, confidence))
+}
+
+/// The filter, of positional arguments.
+#[allow(clippy::too_many_arguments, reason = "the reference's positional arguments")]
+pub(super) fn filter(
+    bandwidth: &Bound<'_, PyAny>,
+    search_radius: i64,
+    patch_radius: usize,
+    distance: &str,
+    weights: &str,
+    neighbors: i64,
+    chart: &str,
+    boundary: &str,
+    lookahead: i64,
+) -> PyResult<NonlocalPoseMeans> {
     let bandwidth = input::<f64>("bandwidth", bandwidth)?;
-    let filter = NonlocalPoseMeans {
+    Ok(NonlocalPoseMeans {
         search_radius: usize::try_from(search_radius).ok(),
         patch_radius,
         bandwidth: elements("bandwidth", &bandwidth)?.to_vec(),
@@ -43,8 +70,7 @@ pub(crate) fn nonlocal_pose_means(
         )?,
         boundary: names::boundary(boundary)?,
         lookahead: usize::try_from(lookahead).ok(),
-    };
-    by_dtype!(q, T => typed::<T>(py, &filter, q, translation, confidence))
+    })
 }
 
 fn typed<T: Real + Element>(

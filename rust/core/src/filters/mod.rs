@@ -6,3 +6,4 @@ mod local;
 pub mod nonlocal_pose_means;
 pub mod orientation_filter;
 mod samples;
+pub mod stream;

@@ -99,23 +99,24 @@ pub struct Translation<'a, T> {
 
 /// The reach of the window, settled.
 #[derive(Debug, Clone, Copy)]
-struct Reach {
+pub(super) struct Reach {
     /// Earlier frames that are candidates.
-    back: usize,
+    pub(super) back: usize,
     /// Later frames that are candidates.
-    ahead: usize,
+    pub(super) ahead: usize,
     /// Frames of a patch before its centre.
-    before: usize,
+    pub(super) before: usize,
     /// Frames of a patch after its centre.
-    after: usize,
+    pub(super) after: usize,
     /// Frames added to the clip at each end.
-    pad: usize,
+    pub(super) pad: usize,
     /// Whether added frames are candidates.
-    added: bool,
+    pub(super) added: bool,
 }
 
 impl NonlocalPoseMeans {
-    fn reach(&self, frames: usize) -> Reach {
+    /// The reach in a clip of so many frames.
+    pub(super) fn reach(&self, frames: usize) -> Reach {
         let window = self.search_radius.unwrap_or_else(|| frames.saturating_sub(1));
         let after = self.patch_radius.min(self.lookahead.unwrap_or(usize::MAX));
         Reach {

@@ -3,6 +3,7 @@
 use super::Chart;
 use crate::parallel::{self, Interrupt};
 use crate::rotations::mean::mean;
+use crate::rotations::quaternion::lower;
 use crate::simd::multiversion;
 use crate::window::Extended;
 use crate::{ClipView, Error, Real};
@@ -261,9 +262,4 @@ multiversion! {
             }
         }
     }
-}
-
-/// Whether the first component that is not zero is negative: the half of S³ that does not hold the identity.
-fn lower<T: Real>(q: [T; 4]) -> bool {
-    q.into_iter().find(|&x| x != T::ZERO).is_some_and(|x| x < T::ZERO)
 }

@@ -12,8 +12,8 @@ mod rows;
 mod scan;
 
 pub use one::{
-    angle_between, between, conjugate_one, dot, exp_one, geodesic, is_missing, log_one, log_short, negative,
-    of_row, product, rotate, unit,
+    angle_between, between, conjugate_one, dot, exp_one, geodesic, is_missing, log_one, log_short, lower,
+    negative, of_row, product, rotate, unit,
 };
 pub use rows::{conjugate, exp, geodesic_distance, log, multiply, normalize};
 pub use scan::{Scan, scan};

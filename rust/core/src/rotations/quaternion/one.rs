@@ -128,6 +128,12 @@ pub fn negative<T: Real>(q: [T; 4]) -> [T; 4] {
     [-q[0], -q[1], -q[2], -q[3]]
 }
 
+/// Whether the first component that is not zero is negative: the half of S³ that does not hold the identity.
+#[must_use]
+pub fn lower<T: Real>(q: [T; 4]) -> bool {
+    q.into_iter().find(|&x| x != T::ZERO).is_some_and(|x| x < T::ZERO)
+}
+
 /// Whether a sample is missing: a component that is not finite, or four zeros.
 #[inline(always)]
 #[must_use]

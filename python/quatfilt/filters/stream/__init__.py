@@ -1,0 +1,1 @@
+"""Streams: a pose in, a cleaner pose out."""

@@ -1,0 +1,163 @@
+//! Streams: filters that take a clip pose by pose and give it back pose by pose, a fixed number of frames later.
+//!
+//! What comes out is what the filter of the whole clip makes of it, with the same window of earlier and later frames. A
+//! stream has state, allocates it when it is made, and does the same work for each pose on the calling thread: a pose is
+//! too little to share. It computes in float64 whatever the caller's dtype is.
+//!
+//! - here: what a live source does wrong, missing samples and signs, is settled before a filter sees a pose;
+//! - `pose`: poses as planes over the joints, and rings of the latest ones;
+//! - `ends`: filters with a window, and what they see beyond the ends of the clip;
+//! - one file for each filter. A filter with a window implements `Window`; any other, `Causal`.
+
+mod ends;
+mod nonlocal_pose_means;
+mod pose;
+
+use crate::Error;
+use crate::error::check_length;
+use crate::rotations::quaternion::{dot, is_missing, lower, negative, of_row, unit};
+use pose::Pose;
+
+/// A filter that takes poses one by one.
+///
+/// The quaternions have length 1 and follow each other without a jump in sign, from the half of S³ on that holds the
+/// identity. A sample that is missing stands at the last one that was there, with confidence 0.
+trait Causal: Send {
+    /// How many frames later a pose comes out.
+    fn latency(&self) -> usize;
+
+    /// Says where a joint is that was never there before: all earlier poses had it there, with confidence 0.
+    ///
+    /// It is called before the pose that has the sample is pushed.
+    fn appear(&mut self, joint: usize, q: [f64; 4]);
+
+    /// Takes the next pose. Returns whether one came out, into `out`: the one of `latency` frames ago.
+    fn push(&mut self, pose: &Pose, out: &mut Pose) -> bool;
+
+    /// After the last pose: writes the next of those that are still to come out. Returns whether there was one.
+    fn finish(&mut self, out: &mut Pose) -> bool;
+}
+
+/// A filter at work on a clip that is not over yet.
+pub struct PoseStream {
+    filter: Box<dyn Causal>,
+    joints: Vec<Joint>,
+    taken: usize,
+    given: usize,
+    ended: bool,
+    pose: Pose,
+    out: Pose,
+    row: Vec<f64>,
+}
+
+/// What is known of a joint.
+#[derive(Debug, Clone, Copy, Default)]
+struct Joint {
+    /// The frame of its first sample.
+    since: Option<usize>,
+    taken: Sign,
+    given: Sign,
+}
+
+/// Follows the sign of a path.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sign {
+    before: [f64; 4],
+    turned: bool,
+}
+
+impl Sign {
+    /// The next sample with the sign that makes the path continuous.
+    fn follow(&mut self, q: [f64; 4]) -> [f64; 4] {
+        self.turned ^= dot(q, self.before) < 0.0;
+        self.before = q;
+        if self.turned { negative(q) } else { q }
+    }
+}
+
+impl PoseStream {
+    fn new(filter: impl Causal + 'static, joints: usize) -> Self {
+        Self {
+            filter: Box::new(filter),
+            joints: vec![Joint::default(); joints],
+            taken: 0,
+            given: 0,
+            ended: false,
+            pose: Pose::new(joints),
+            out: Pose::new(joints),
+            row: vec![0.0; joints * 4],
+        }
+    }
+
+    /// How many joints a pose has.
+    #[must_use]
+    pub fn joints(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// How many frames later a pose comes out.
+    #[must_use]
+    pub fn latency(&self) -> usize {
+        self.filter.latency()
+    }
+
+    /// How many poses are still to come out.
+    #[must_use]
+    pub fn pending(&self) -> usize {
+        self.taken - self.given
+    }
+
+    /// Takes the next pose, `(joints, 4)`, and confidences, `(joints,)` in 0…1. Returns the pose of `latency` frames ago.
+    ///
+    /// A joint that is missing holds its last sample, with confidence 0; before its first one NaN comes out. Quaternions
+    /// need not have length 1 exactly. Those that come out are continuous in sign from the hemisphere of the first sample.
+    ///
+    /// # Errors
+    /// [`Error::Length`] if slices do not fit together; [`Error::Parameter`] after [`PoseStream::finish`].
+    pub fn push(&mut self, pose: &[f64], confidence: Option<&[f64]>) -> Result<Option<&[f64]>, Error> {
+        check_length("pose", self.joints.len() * 4, pose.len())?;
+        if let Some(confidence) = confidence {
+            check_length("confidence", self.joints.len(), confidence.len())?;
+        }
+        if self.ended {
+            return Err(Error::Parameter { name: "pose", expected: "no more of them after the end" });
+        }
+        for (index, (joint, q)) in self.joints.iter_mut().zip(pose.chunks_exact(4)).enumerate() {
+            let q = of_row(q);
+            if is_missing(q) {
+                self.pose.trust(index, 0.0);
+                continue;
+            }
+            let q = unit(q);
+            if joint.since.is_none() {
+                joint.since = Some(self.taken);
+                joint.taken = Sign { before: q, turned: lower(q) };
+                joint.given.before = q;
+                self.filter.appear(index, joint.taken.follow(q));
+            }
+            self.pose.set(index, joint.taken.follow(q));
+            self.pose.trust(index, confidence.map_or(1.0, |confidence| confidence[index]));
+        }
+        self.taken += 1;
+        let came = self.filter.push(&self.pose, &mut self.out);
+        Ok(came.then(|| self.give()))
+    }
+
+    /// Returns the next of the poses that are still to come out, or `None` after the last. Ends the clip.
+    pub fn finish(&mut self) -> Option<&[f64]> {
+        self.ended = true;
+        let came = self.filter.finish(&mut self.out);
+        came.then(|| self.give())
+    }
+
+    /// The pose that came out, as a row.
+    fn give(&mut self) -> &[f64] {
+        for (index, (joint, row)) in self.joints.iter_mut().zip(self.row.chunks_exact_mut(4)).enumerate() {
+            let there = joint.since.is_some_and(|since| since <= self.given);
+            let q = if there { joint.given.follow(self.out.at(index)) } else { [f64::NAN; 4] };
+            row.copy_from_slice(&q);
+        }
+        self.given += 1;
+        &self.row
+    }
+}
