@@ -83,6 +83,7 @@ fn orientation_filters<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Resu
         kernel: Kernel::Gaussian,
         iterations: 1,
         boundary: Boundary::Mirror,
+        lookahead: None,
     };
     timer.threads::<T, _, _>("filters/bilateral", size, || {
         filter.filter(clip, None, ClipMut::new(&mut out, frames, joints)?, &interrupt)

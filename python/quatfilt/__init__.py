@@ -14,6 +14,7 @@ from quatfilt.filters.bilateral import bilateral
 from quatfilt.filters.gaps import fill_gaps
 from quatfilt.filters.nonlocal_pose_means import nonlocal_pose_means
 from quatfilt.filters.orientation_filter import orientation_filter
+from quatfilt.filters.stream.bilateral import BilateralStream
 from quatfilt.filters.stream.nonlocal_pose_means import NonlocalPoseMeansStream
 from quatfilt.formats.files import read_motion, write_motion
 from quatfilt.motion import metrics
@@ -33,6 +34,7 @@ if _is_debug_build():
     )
 
 __all__ = [
+    "BilateralStream",
     "EndSite",
     "FileAccessError",
     "FileFormatError",

@@ -9,6 +9,7 @@ __all__ = [
     "FormatError",
     "PoseStream",
     "bilateral",
+    "bilateral_stream",
     "conjugate",
     "continuous",
     "continuous_euler",
@@ -49,6 +50,7 @@ def bilateral(
     kernel: str,
     iterations: int,
     boundary: str,
+    lookahead: int,
     /,
 ) -> tuple[Array, Array | None]: ...
 
@@ -84,6 +86,18 @@ class PoseStream:
         self, pose: NDArray[np.float64], confidence: NDArray[np.float64] | None, /
     ) -> NDArray[np.float64] | None: ...
     def flush(self, /) -> NDArray[np.float64]: ...
+
+# filters/stream/bilateral
+def bilateral_stream(
+    radius: int,
+    sigma_time: float,
+    sigma_angle: NDArray[np.float64],
+    kernel: str,
+    iterations: int,
+    boundary: str,
+    lookahead: int,
+    /,
+) -> PoseStream: ...
 
 # filters/stream/nonlocal_pose_means
 def nonlocal_pose_means_stream(

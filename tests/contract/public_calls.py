@@ -55,6 +55,9 @@ def streamed(stream, q):
 
 
 CALLS = {
+    "BilateralStream": lambda a, _b, _v: streamed(
+        qf.BilateralStream(sigma_angle=1.0, iterations=2, lookahead=2), a
+    ),
     "NonlocalPoseMeansStream": lambda a, _b, _v: streamed(
         qf.NonlocalPoseMeansStream(bandwidth=1.0, lookahead=7), a
     ),

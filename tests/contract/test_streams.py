@@ -15,6 +15,7 @@ from quatfilt import _core
 from scipy.spatial.transform import Rotation
 
 STREAMS = {
+    "BilateralStream": lambda **options: qf.BilateralStream(**{"lookahead": 2, "iterations": 2} | options),
     "NonlocalPoseMeansStream": lambda **options: qf.NonlocalPoseMeansStream(
         **{"bandwidth": 0.05, "lookahead": 3} | options
     ),
@@ -336,7 +337,36 @@ def test_every_backend_has_the_cores_streams(name):
 POSITIVE = "expected a number above 0"
 RADIUS = "expected an integer of at least 1 and at most 1000"
 
+MIRROR = "boundary: expected one of 'nearest', 'linear', got 'mirror': it shows later frames before the first"
+LINEAR = "boundary: expected 'nearest' with lookahead=0, got 'linear'; the velocity at the start needs the second frame"
+
 WRONG_OPTIONS = {
+    "BilateralStream": [
+        ({"radius": -1}, ValueError, "radius: expected an integer of at least 0 and at most 1000, got -1"),
+        (
+            {"radius": 1001},
+            ValueError,
+            "radius: expected an integer of at least 0 and at most 1000, got 1001",
+        ),
+        ({"sigma_time": 0}, ValueError, f"sigma_time: {POSITIVE}, got 0"),
+        ({"sigma_angle": 0}, ValueError, f"sigma_angle: {POSITIVE}, got 0"),
+        ({"sigma_angle": [1, np.nan]}, ValueError, f"sigma_angle[1]: {POSITIVE}, got nan"),
+        ({"sigma_angle": "auto"}, TypeError, f"sigma_angle: {POSITIVE}, got str"),
+        (
+            {"kernel": "box"},
+            ValueError,
+            "kernel: expected one of 'gaussian', 'printed', 'classic', got 'box'",
+        ),
+        (
+            {"iterations": 0},
+            ValueError,
+            "iterations: expected an integer of at least 1 and at most 1000, got 0",
+        ),
+        ({"lookahead": -1}, ValueError, "lookahead: expected an integer of at least 0 and at most 4, got -1"),
+        ({"lookahead": 5}, ValueError, "lookahead: expected an integer of at least 0 and at most 4, got 5"),
+        ({"boundary": "mirror"}, ValueError, MIRROR),
+        ({"boundary": "linear", "lookahead": 0}, ValueError, LINEAR),
+    ],
     "NonlocalPoseMeansStream": [
         (
             {"bandwidth": "auto"},
@@ -393,17 +423,9 @@ WRONG_OPTIONS = {
             "chart: expected one of 'local', 'identity', got 'mean': the mean rotation needs the whole clip",
         ),
         ({"chart": "log"}, ValueError, "chart: expected one of 'local', 'identity', got 'log'"),
-        (
-            {"boundary": "mirror"},
-            ValueError,
-            "boundary: expected one of 'nearest', 'linear', got 'mirror': it shows later frames before the first",
-        ),
+        ({"boundary": "mirror"}, ValueError, MIRROR),
         ({"boundary": None}, ValueError, "boundary: expected one of 'nearest', 'linear', got None"),
-        (
-            {"boundary": "linear", "lookahead": 0},
-            ValueError,
-            "boundary: expected 'nearest' with lookahead=0, got 'linear'; the velocity at the start needs the second frame",
-        ),
+        ({"boundary": "linear", "lookahead": 0}, ValueError, LINEAR),
     ],
 }
 
@@ -422,7 +444,9 @@ def test_options_are_keyword_only(name):
         getattr(qf, name)(3)
 
 
-@pytest.mark.parametrize(("name", "option"), [("NonlocalPoseMeansStream", "bandwidth")])
+@pytest.mark.parametrize(
+    ("name", "option"), [("BilateralStream", "sigma_angle"), ("NonlocalPoseMeansStream", "bandwidth")]
+)
 def test_one_strength_per_joint(name, option):
     strengths = np.array([0.02, 0.1, 0.3])
     stream = STREAMS[name](**{option: strengths})
@@ -474,6 +498,12 @@ def test_windows_that_no_memory_holds_are_refused():
     )
     message = refused(ValueError, stream.push, np.tile([1.0, 0, 0, 0], (200, 1)))
     assert message == "search_radius: expected a window whose patch distances fit into 2 GiB"
+
+
+def test_passes_that_no_memory_holds_are_refused():
+    stream = qf.BilateralStream(radius=1000, iterations=1000)
+    message = refused(ValueError, stream.push, np.tile([1.0, 0, 0, 0], (31, 1)))
+    assert message == "radius: expected a window whose passes fit into 2 GiB"
 
 
 # ---- the module below

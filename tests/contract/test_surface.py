@@ -12,6 +12,7 @@ STREAMS = "the reference's filter of the whole clip defines the stream"
 ONLY_IN_CORE = {
     "FormatError": FILES,
     "PoseStream": STREAMS,
+    "bilateral_stream": STREAMS,
     "get_num_threads": "the reference has no threads",
     "is_debug_build": "the reference is not built",
     "nonlocal_pose_means_stream": STREAMS,

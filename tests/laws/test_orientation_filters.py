@@ -12,20 +12,28 @@ BINOMIAL = np.array([1.0, 4, 6, 4, 1])
 REACH = 2
 TWICE = 2
 
-FILTERS = {
-    "binomial": lambda backend, q: backend.orientation_filter(q, BINOMIAL, TWICE, "mirror"),
-    "savitzky_golay": lambda backend, q: backend.orientation_filter(
-        q, np.array([-3.0, 12, 17, 12, -3]), TWICE, "linear"
-    ),
-    "one_sided": lambda backend, q: backend.orientation_filter(
-        q, np.array([1.0, 2, 3, 0, 0]), TWICE, "nearest"
-    ),
-} | {
-    kernel: lambda backend, q, kernel=kernel: backend.bilateral(
-        q, None, REACH, 1.0, np.full(q.shape[1], 0.2), kernel, TWICE, "mirror"
-    )[0]
-    for kernel in ("gaussian", "printed", "classic")
-}
+FILTERS = (
+    {
+        "binomial": lambda backend, q: backend.orientation_filter(q, BINOMIAL, TWICE, "mirror"),
+        "savitzky_golay": lambda backend, q: backend.orientation_filter(
+            q, np.array([-3.0, 12, 17, 12, -3]), TWICE, "linear"
+        ),
+        "one_sided": lambda backend, q: backend.orientation_filter(
+            q, np.array([1.0, 2, 3, 0, 0]), TWICE, "nearest"
+        ),
+    }
+    | {
+        kernel: lambda backend, q, kernel=kernel: backend.bilateral(
+            q, None, REACH, 1.0, np.full(q.shape[1], 0.2), kernel, TWICE, "mirror", -1
+        )[0]
+        for kernel in ("gaussian", "printed", "classic")
+    }
+    | {
+        "looking_back": lambda backend, q: backend.bilateral(
+            q, None, REACH, 1.0, np.full(q.shape[1], 0.2), "gaussian", TWICE, "nearest", 0
+        )[0]
+    }
+)
 """Each reaches `TWICE · REACH` frames."""
 
 every_filter = pytest.mark.parametrize("name", FILTERS)
@@ -120,7 +128,7 @@ def test_without_a_scale_of_angles_the_bilateral_filter_has_one_mask(backend, ke
     q, _ = sample(5)
     lags = np.abs(np.arange(-3, 4))
     mask = np.exp(-(lags if kernel == "gaussian" else lags**2) / (2 * 1.5**2))
-    result, _ = backend.bilateral(q, None, 3, 1.5, np.full(3, np.inf), kernel, 2, "linear")
+    result, _ = backend.bilateral(q, None, 3, 1.5, np.full(3, np.inf), kernel, 2, "linear", -1)
     expected = backend.orientation_filter(q, mask, 2, "linear")
     assert clips.angles(result, expected).max() < tolerances.FLOAT64
 
@@ -130,12 +138,40 @@ def test_a_step_stays_while_the_noise_goes(backend):
     angle = np.where(np.arange(120) < 60, 0.0, 2.0) + rng.normal(0, 0.03, 120)
     q = clips.from_vectors(angle[:, None, None] * np.array([0, 0, 1.0]))
     step = clips.from_vectors(np.where(np.arange(120) < 60, 0.0, 2.0)[:, None, None] * np.array([0, 0, 1.0]))
-    result, _ = backend.bilateral(q, None, 4, 1.0, np.array([0.2]), "gaussian", 5, "mirror")
+    result, _ = backend.bilateral(q, None, 4, 1.0, np.array([0.2]), "gaussian", 5, "mirror", -1)
     error = clips.angles(result, step)
     assert np.sqrt(np.mean(error**2)) < 0.5 * np.sqrt(np.mean(clips.angles(q, step) ** 2))
     mask = np.exp(-np.abs(np.arange(-4, 5)) / 2)
     blurred = backend.orientation_filter(q, mask, 5, "mirror")
     assert clips.angles(blurred, step)[58:62].min() > 5 * error[58:62].max()
+
+
+@given(seed=seeds, lookahead=st.integers(0, 3), iterations=st.integers(1, 3))
+def test_frames_beyond_the_lookahead_do_not_matter(backend, seed, lookahead, iterations):
+    """Each pass looks so far ahead."""
+    q, rng = sample(seed)
+    other = q.copy()
+    seen = 15
+    other[seen:] = clips.random_rotations(rng, *other[seen:].shape[:-1])
+
+    def filtered(q):
+        scale = np.full(3, 0.2)
+        return backend.bilateral(q, None, 3, 1.0, scale, "gaussian", iterations, "nearest", lookahead)[0]
+
+    settled = seen - iterations * lookahead
+    difference = clips.angles(filtered(other), filtered(q))
+    assert difference[:settled].max() < tolerances.FLOAT64
+    assert difference[settled:].max() > 1e-3
+
+
+def test_a_lookahead_of_the_radius_is_no_limit(backend):
+    q, _ = sample(9)
+    results = [
+        backend.bilateral(q, None, 3, 1.0, np.full(3, 0.2), "gaussian", 2, "mirror", lookahead)[0]
+        for lookahead in (-1, 3, 100)
+    ]
+    np.testing.assert_array_equal(results[1], results[0])
+    np.testing.assert_array_equal(results[2], results[0])
 
 
 def paper_noise():
@@ -157,7 +193,7 @@ def test_five_passes_of_the_squared_kernel_filter_and_of_the_printed_one_do_not(
         return np.mean((clips.angles(x, clean) / 2) ** 2)
 
     def filtered(kernel):
-        return error(backend.bilateral(q, None, 4, 1.0, np.array([0.2]), kernel, 5, "mirror")[0])
+        return error(backend.bilateral(q, None, 4, 1.0, np.array([0.2]), kernel, 5, "mirror", -1)[0])
 
     assert error(q) == pytest.approx(0.0243, rel=0.05)
     assert filtered("gaussian") < error(q) / 4
@@ -177,15 +213,15 @@ def test_the_translation_has_the_weights_of_the_root(backend):
     rng = np.random.default_rng(8)
     path = clips.path(rng, 40)
     q = np.repeat(clips.random_rotations(rng, 1, 2), 40, axis=0)
-    _, moved = backend.bilateral(q, path, 2, 1.0, np.full(2, 0.2), "gaussian", 1, "mirror")
+    _, moved = backend.bilateral(q, path, 2, 1.0, np.full(2, 0.2), "gaussian", 1, "mirror", -1)
     mask = np.exp(-np.abs(np.arange(-2, 3)) / 2)
     padded = np.pad(path, ((2, 2), (0, 0)), mode="reflect")
     expected = np.stack([np.convolve(column, mask / mask.sum(), "valid") for column in padded.T], axis=1)
     np.testing.assert_allclose(moved, expected, rtol=0, atol=tolerances.FLOAT64)
     q[20:, 0] = clips.product(q[20:, 0], clips.from_vectors(np.array([0, 3.0, 0])))
-    _, moved = backend.bilateral(q, path, 2, 1.0, np.full(2, 0.1), "gaussian", 1, "mirror")
+    _, moved = backend.bilateral(q, path, 2, 1.0, np.full(2, 0.1), "gaussian", 1, "mirror", -1)
     _, first = backend.bilateral(
-        np.ascontiguousarray(q[:20]), path[:20], 2, 1.0, np.full(2, 0.1), "gaussian", 1, "mirror"
+        np.ascontiguousarray(q[:20]), path[:20], 2, 1.0, np.full(2, 0.1), "gaussian", 1, "mirror", -1
     )
     # Frame 19 has no later neighbour with a weight: what it is made of are the frames up to 19.
     share = mask[:3] / mask[:3].sum()

@@ -65,9 +65,11 @@ KERNELS = {
 
 @pytest.mark.parametrize("boundary", ["mirror", "nearest"])
 @pytest.mark.parametrize("frames", [2, 3, 20])
+@pytest.mark.parametrize("lookahead", [-1, 0, 2])
 @pytest.mark.parametrize("kernel", KERNELS)
-def test_bilateral(backend, kernel, frames, boundary):
+def test_bilateral(backend, kernel, lookahead, frames, boundary):
     q = sample(frames)
-    result, _ = backend.bilateral(q, None, RADIUS, 1.3, np.array([0.3]), kernel, 2, boundary)
-    loops = expected(q, lambda r, angle: KERNELS[kernel](r, angle / 2), 2, boundary)
+    result, _ = backend.bilateral(q, None, RADIUS, 1.3, np.array([0.3]), kernel, 2, boundary, lookahead)
+    last = RADIUS if lookahead < 0 else lookahead
+    loops = expected(q, lambda r, angle: KERNELS[kernel](r, angle / 2) * (r <= last), 2, boundary)
     assert clips.angles(result, loops).max() < tolerances.FLOAT64

@@ -9,10 +9,11 @@ from quatfilt._backend import ops
 from quatfilt._typing import Array
 from quatfilt.filters import _spans
 from quatfilt.filters.boundary import BOUNDARIES, Boundary
+from quatfilt.filters.nonlocal_pose_means import MOST, NO_LIMIT
 
 Kernel = Literal["gaussian", "printed", "classic"]
 
-_KERNELS: tuple[Kernel, ...] = ("gaussian", "printed", "classic")
+KERNELS: tuple[Kernel, ...] = ("gaussian", "printed", "classic")
 
 _LONGEST_RADIUS = 5000
 """Frames: no weights in time reach so far, and the sums of turns stay where sine and cosine are exact in float32."""
@@ -27,6 +28,7 @@ def bilateral(
     kernel: Kernel = "gaussian",
     iterations: int = 1,
     boundary: Boundary = "mirror",
+    lookahead: int | None = None,
     gaps: _spans.Gaps = "fill",
     max_gap: float | None = None,
     fps: float = 1.0,
@@ -59,6 +61,8 @@ def bilateral(
     boundary : {"mirror", "linear", "nearest"}, default "mirror"
         How the clip goes on beyond its ends, anew each time: time turns round at the end frame, which is not repeated;
         the angular velocity is held; the end pose is held.
+    lookahead : int or None, frames, default None
+        If given, each pass sees at most so many later frames; all of them together `iterations` times as many.
     gaps : {"fill", "keep", "raise"}, default "fill"
         What becomes of missing samples. Filled ones count like any other; with ``"keep"`` they are missing again in the
         result.
@@ -82,6 +86,7 @@ def bilateral(
     See Also
     --------
     orientation_filter : The same mask for all frames.
+    BilateralStream : The same for a live source.
 
     Notes
     -----
@@ -115,6 +120,7 @@ def bilateral(
         kernel=kernel,
         iterations=iterations,
         boundary=boundary,
+        lookahead=lookahead,
         gaps=gaps,
         max_gap=max_gap,
         fps=fps,
@@ -132,6 +138,7 @@ def with_translation(
     kernel: Kernel,
     iterations: int,
     boundary: Boundary,
+    lookahead: int | None,
     **missing: Any,
 ) -> tuple[Array, Array | None]:
     """Filter as `bilateral` does, and a translation ``(frames, 3)`` with the root's weights."""
@@ -142,9 +149,12 @@ def with_translation(
         sigma_angle, "sigma_angle", clip.rotations.shape[1], above=0, infinite=True
     )
     options = (
-        _validation.choice(kernel, "kernel", _KERNELS),
+        _validation.choice(kernel, "kernel", KERNELS),
         _validation.integer(iterations, "iterations", at_least=1),
         _validation.choice(boundary, "boundary", BOUNDARIES),
+        NO_LIMIT
+        if lookahead is None
+        else _validation.integer(lookahead, "lookahead", at_least=0, at_most=MOST),
     )
     moved = None if translation is None else translation.astype(clip.rotations.dtype)
 
@@ -159,4 +169,4 @@ def with_translation(
     return clip.filter(run), moved
 
 
-__all__ = ["Kernel", "bilateral", "with_translation"]
+__all__ = ["KERNELS", "Kernel", "bilateral", "with_translation"]

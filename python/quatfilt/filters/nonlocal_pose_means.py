@@ -20,7 +20,7 @@ _CHARTS: tuple[Chart, ...] = ("mean", "identity", "local")
 WEIGHTS: tuple[Weights, ...] = ("pose", "joint")
 DISTANCES: tuple[Distance, ...] = ("mean", "sum")
 
-_WHOLE_CLIP = ALL = _NO_LIMIT = -1
+_WHOLE_CLIP = ALL = NO_LIMIT = -1
 
 _LONGEST_RADIUS = 100_000
 """Frames: windows and patches beyond it would take memory for frames that no clip has."""
@@ -120,6 +120,10 @@ def nonlocal_pose_means(
     ------
     ValueError, TypeError
         If an argument has another shape, type or range than stated; the message names it.
+
+    See Also
+    --------
+    NonlocalPoseMeansStream : The same for a live source.
 
     Notes
     -----
@@ -227,7 +231,7 @@ def _checked(
         ALL if neighbors is None else _validation.integer(neighbors, "neighbors", at_least=1, at_most=MOST),
         _validation.choice(chart, "chart", _CHARTS),
         _validation.choice(boundary, "boundary", BOUNDARIES),
-        _NO_LIMIT
+        NO_LIMIT
         if lookahead is None
         else _validation.integer(lookahead, "lookahead", at_least=0, at_most=MOST),
     )
@@ -270,6 +274,7 @@ __all__ = [
     "ALL",
     "DISTANCES",
     "MOST",
+    "NO_LIMIT",
     "WEIGHTS",
     "Boundary",
     "Chart",

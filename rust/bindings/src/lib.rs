@@ -24,6 +24,8 @@ mod _core {
     #[pymodule_export]
     use super::filters::stream::PoseStream;
     #[pymodule_export]
+    use super::filters::stream::bilateral::bilateral_stream;
+    #[pymodule_export]
     use super::filters::stream::nonlocal_pose_means::nonlocal_pose_means_stream;
     #[pymodule_export]
     use super::formats::FormatError;

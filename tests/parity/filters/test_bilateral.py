@@ -32,10 +32,11 @@ def agree(
     kernel="gaussian",
     iterations=1,
     boundary="mirror",
+    lookahead=-1,
 ):
     sigma_angle = np.broadcast_to(sigma_angle, q.shape[1]).astype(np.float64)
     translation = None if translation is None else np.require(translation, q.dtype, "C")
-    arguments = (q, translation, radius, sigma_time, sigma_angle, kernel, iterations, boundary)
+    arguments = (q, translation, radius, sigma_time, sigma_angle, kernel, iterations, boundary, lookahead)
     before = [x.tobytes() for x in arguments[:2] if x is not None]
     (result, moved), (expected, path) = (backend.bilateral(*arguments) for backend in (_core, _reference))
     assert [x.tobytes() for x in arguments[:2] if x is not None] == before, "an input was written"
@@ -62,6 +63,7 @@ def agree(
             "kernel": st.sampled_from(KERNELS),
             "iterations": st.integers(1, 4),
             "boundary": st.sampled_from(BOUNDARIES),
+            "lookahead": st.sampled_from([-1, 0, 1, 3, 30]),
         }
     ),
     sigma_angle=st.sampled_from([0.1, 0.2, 1.0, np.inf]),

@@ -25,10 +25,11 @@ def bilateral(
     kernel: Kernel,
     iterations: int,
     boundary: Boundary,
+    lookahead: int,
 ) -> tuple[Reals, Reals | None]:
     """Filter orientations with a mask of their own for each frame and joint.
 
-    The mask is `m_r = W(r) / Σ W` over `r = −radius … radius`, with the weights `W` of :func:`weights`, and it is applied
+    The mask is `m_r = W(r) / Σ W` over `r = −radius … min(radius, lookahead)`, with the weights `W` of :func:`weights`, and it is applied
     as :func:`.orientation_filter.orientation_filter` applies it.
 
     Parameters
@@ -49,6 +50,8 @@ def bilateral(
         How often the filter is applied, each time with weights of the result before.
     boundary : "mirror", "linear" or "nearest"
         How the clip goes on beyond its ends, anew for each pass; see :mod:`.boundary`.
+    lookahead : int, frames
+        How many later frames have a weight, in each pass; −1: as many as earlier ones.
 
     Returns
     -------
@@ -63,6 +66,8 @@ def bilateral(
     moved = None if translation is None else translation.astype(np.float64)
     for _ in range(iterations):
         mask = weights(result, radius, sigma_time, sigma_angle, kernel, boundary)
+        if lookahead >= 0:
+            mask[..., radius + lookahead + 1 :] = 0
         if moved is not None:
             share = mask[:, 0] / mask[:, 0].sum(axis=-1, keepdims=True)
             around = extend_vectors(moved, radius, boundary)

@@ -29,6 +29,14 @@ def checked_boundary(boundary: Boundary, latency: int) -> Boundary:
     return chosen
 
 
+def strength(value: float | ArrayLike, name: str, *, infinite: bool = False) -> float | Array:
+    """Return a checked number, or a copy of one per joint; the first pose tells whether it fits."""
+    if np.isscalar(value):
+        return _validation.number(value, name, above=0, infinite=infinite)
+    array = _validation.floats(value, name).copy()
+    return _validation.per_joint(array, name, array.size, above=0, infinite=infinite)
+
+
 class Stream(ABC):
     """A filter that takes a clip pose by pose.
 
@@ -109,4 +117,4 @@ class Stream(ABC):
         )
 
 
-__all__ = ["LONGEST_RADIUS", "Stream", "checked_boundary"]
+__all__ = ["LONGEST_RADIUS", "Stream", "checked_boundary", "strength"]

@@ -2,7 +2,6 @@
 
 from typing import Literal, cast
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from quatfilt import _validation
@@ -109,11 +108,7 @@ class NonlocalPoseMeansStream(_stream.Stream):
             raise ValueError(
                 "search_radius: expected a number of frames, got None; a stream has no whole clip"
             )
-        # Numbers are checked here, and against the number of joints when the first pose tells it.
-        self._bandwidth = (
-            bandwidth if np.isscalar(bandwidth) else _validation.floats(bandwidth, "bandwidth").copy()
-        )
-        _validation.per_joint(self._bandwidth, "bandwidth", np.size(self._bandwidth), above=0)
+        self._bandwidth = _stream.strength(bandwidth, "bandwidth")
         radius = _validation.integer(
             search_radius, "search_radius", at_least=1, at_most=_stream.LONGEST_RADIUS
         )

@@ -8,8 +8,10 @@ use quatfilt_core::Real;
 use quatfilt_core::filters::bilateral::{Bilateral, Kernel, Translation};
 
 /// Filters rotations `(frames, joints, 4)` and, with the weights of the first joint, a translation `(frames, 3)`.
+///
+/// A `lookahead` of −1 stands for no limit.
 #[pyfunction]
-#[pyo3(signature = (q, translation, radius, sigma_time, sigma_angle, kernel, iterations, boundary, /))]
+#[pyo3(signature = (q, translation, radius, sigma_time, sigma_angle, kernel, iterations, boundary, lookahead, /))]
 #[allow(clippy::too_many_arguments, reason = "the reference's positional arguments")]
 pub(crate) fn bilateral(
     py: Python<'_>,
@@ -21,19 +23,34 @@ pub(crate) fn bilateral(
     kernel: &str,
     iterations: usize,
     boundary: &str,
+    lookahead: i64,
 ) -> PyResult<(Py<PyAny>, Option<Py<PyAny>>)> {
+    let filter = filter(radius, sigma_time, sigma_angle, kernel, iterations, boundary, lookahead)?;
+    by_dtype!(q, T => typed::<T>(py, &filter, q, translation))
+}
+
+/// The filter, of positional arguments.
+pub(super) fn filter(
+    radius: usize,
+    sigma_time: f64,
+    sigma_angle: &Bound<'_, PyAny>,
+    kernel: &str,
+    iterations: usize,
+    boundary: &str,
+    lookahead: i64,
+) -> PyResult<Bilateral> {
     let sigma_angle = input::<f64>("sigma_angle", sigma_angle)?;
     let kernels =
         [("gaussian", Kernel::Gaussian), ("printed", Kernel::Printed), ("classic", Kernel::Classic)];
-    let filter = Bilateral {
+    Ok(Bilateral {
         radius,
         sigma_time,
         sigma_angle: elements("sigma_angle", &sigma_angle)?.to_vec(),
         kernel: named("kernel", kernel, &kernels)?,
         iterations,
         boundary: names::boundary(boundary)?,
-    };
-    by_dtype!(q, T => typed::<T>(py, &filter, q, translation))
+        lookahead: usize::try_from(lookahead).ok(),
+    })
 }
 
 fn typed<T: Real + Element>(

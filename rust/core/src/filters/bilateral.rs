@@ -47,10 +47,12 @@ pub struct Bilateral {
     pub iterations: usize,
     /// How the clip goes on beyond its ends, anew for each pass.
     pub boundary: Boundary,
+    /// How many later frames have a weight, in each pass; `None` for as many as earlier ones.
+    pub lookahead: Option<usize>,
 }
 
 /// Factors of squared angles beyond it weigh nothing but equal rotations, and overflow in float32.
-const LARGEST_FACTOR: f64 = 1e30;
+pub(super) const LARGEST_FACTOR: f64 = 1e30;
 
 impl Bilateral {
     /// Filters `clip` along time into `out`, `(frames, joints, 4)`, sign-continuous from the hemisphere of the first frame,
@@ -72,7 +74,7 @@ impl Bilateral {
     }
 
     /// The exponent of the weight in time.
-    fn exponent(&self, lag: usize) -> f64 {
+    pub(super) fn exponent(&self, lag: usize) -> f64 {
         let lag = lag as f64;
         match self.kernel {
             Kernel::Classic => (lag / self.sigma_time).powi(2) / 2.0,
@@ -120,11 +122,21 @@ impl<T: Real> Local<T> for Bilateral {
             let weights = &mut weights[..pairs];
             let time = T::from_f64(self.exponent(lag).min(LARGEST_FACTOR));
             pair_weights(here, there, time, factor, squared, weights);
-            add_both(weights, lag, total);
+            let ahead = self.lookahead.is_none_or(|most| lag <= most);
+            if ahead {
+                add_both(weights, lag, total);
+            } else {
+                add_weights(&weights[..frames], total);
+            }
             for (way, reach) in ways.iter_mut().zip(reaches.chunks_exact_mut(3)) {
                 for ((steps, moves), reach) in way.steps.iter().zip(&mut way.moves).zip(reach) {
                     lengthen(&mut reach[..2 * self.radius + frames - lag], &steps[lag - 1..]);
-                    add_reaches(weights, &reach[first..first + pairs], lag, &mut moves[..frames]);
+                    let (reach, moves) = (&reach[first..first + pairs], &mut moves[..frames]);
+                    if ahead {
+                        add_reaches(weights, reach, lag, moves);
+                    } else {
+                        take_reaches(weights, reach, moves);
+                    }
                 }
             }
         }
@@ -167,6 +179,17 @@ multiversion! {
 }
 
 multiversion! {
+    /// Adds each frame's weight of its earlier neighbour.
+    fn add_weights<T: Real>(weights: &[T], total: &mut [T]) {
+        let n = total.len();
+        let weights = &weights[..n];
+        for i in 0..n {
+            total[i] += weights[i];
+        }
+    }
+}
+
+multiversion! {
     /// Adds the next step to each sum of steps.
     fn lengthen<T: Real>(reach: &mut [T], steps: &[T]) {
         let n = reach.len();
@@ -185,6 +208,17 @@ multiversion! {
         let (back, ahead) = (&reach[..n], &reach[lag..lag + n]);
         for i in 0..n {
             moves[i] += later[i] * ahead[i] - earlier[i] * back[i];
+        }
+    }
+}
+
+multiversion! {
+    /// Adds the weighted way to each frame's earlier neighbour.
+    fn take_reaches<T: Real>(weights: &[T], reach: &[T], moves: &mut [T]) {
+        let n = moves.len();
+        let (weights, reach) = (&weights[..n], &reach[..n]);
+        for i in 0..n {
+            moves[i] -= weights[i] * reach[i];
         }
     }
 }

@@ -3,6 +3,7 @@
 //! A push takes some ten microseconds. It does not detach: to let go of the interpreter and to wait for it again may take
 //! longer than that, and would let another thread push in between.
 
+pub(crate) mod bilateral;
 pub(crate) mod nonlocal_pose_means;
 
 use crate::array::{BUG, elements, input, output, to_python};

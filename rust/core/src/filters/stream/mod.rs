@@ -9,6 +9,7 @@
 //! - `ends`: filters with a window, and what they see beyond the ends of the clip;
 //! - one file for each filter. A filter with a window implements `Window`; any other, `Causal`.
 
+mod bilateral;
 mod ends;
 mod nonlocal_pose_means;
 mod pose;
@@ -17,6 +18,9 @@ use crate::Error;
 use crate::error::check_length;
 use crate::rotations::quaternion::{dot, is_missing, lower, negative, of_row, unit};
 use pose::Pose;
+
+/// Numbers that a stream may keep: 2 GiB. Of windows that ask for more, no pose would come in time.
+const MOST_NUMBERS: usize = 1 << 28;
 
 /// A filter that takes poses one by one.
 ///

@@ -3,9 +3,9 @@
 //! The distance of two patches is a sum of distances of single frames. A new frame is compared with the frames of one search
 //! radius before it, once; the sums over the patches are taken anew for each frame, so that no error runs on.
 
-use super::PoseStream;
 use super::ends::{Ends, Window};
 use super::pose::{Pose, Ring, plane, width};
+use super::{MOST_NUMBERS, PoseStream};
 use crate::filters::nonlocal_pose_means::{Chart, Distance, NonlocalPoseMeans, Reach, Weights};
 use crate::rotations::quaternion::{between, exp_one, log_one, log_short, product, unit};
 use crate::simd::multiversion;
@@ -19,9 +19,6 @@ const FARTHEST: f64 = 120.0;
 
 /// Factors of squares beyond it weigh nothing but equal rotations, and the products stay finite.
 const LARGEST_FACTOR: f64 = 1e30;
-
-/// Numbers that a stream may keep: 2 GiB. Of windows that ask for more, no pose would ever come in time.
-const MOST_NUMBERS: usize = 1 << 28;
 
 /// Planes of a frame: its unit quaternions (local chart), or half rotation vectors and one to spare, and its confidences.
 const PLANES: usize = 5;

@@ -98,6 +98,11 @@ impl<const N: usize> Ring<N> {
     /// Makes room for a frame in place of the oldest, and returns its planes.
     pub(super) fn advance(&mut self) -> [&mut [f64]; N] {
         self.newest = (self.newest + 1) % self.frames;
+        self.newest_mut()
+    }
+
+    /// The planes of the newest frame, to be written.
+    pub(super) fn newest_mut(&mut self) -> [&mut [f64]; N] {
         self.planes.rows_mut::<N>(self.newest * N)
     }
 
