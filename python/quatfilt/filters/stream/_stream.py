@@ -66,7 +66,7 @@ class Stream(ABC):
         Returns
         -------
         ndarray, shape (n, joints, 4) or (n, 4)
-            The last poses, at most `latency` of them. What lies beyond the end of the clip is made up as `boundary` says.
+            The last poses, at most `latency` of them; ``(0, 0, 4)`` if none was pushed. What lies beyond the end of the clip is made up as `boundary` says.
 
         Raises
         ------

@@ -165,3 +165,83 @@ impl PoseStream {
         &self.row
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::filters::bilateral::{Bilateral, Kernel};
+    use crate::filters::nonlocal_pose_means::{Chart, Distance, NonlocalPoseMeans, Weights};
+    use crate::parallel::Interrupt;
+    use crate::rotations::quaternion::exp_one;
+    use crate::window::Boundary;
+    use crate::{ClipMut, ClipView, Real};
+
+    const FRAMES: usize = 50;
+    const JOINTS: usize = 3;
+
+    /// Joints that swing, with a tremor.
+    fn clip() -> Vec<f64> {
+        let sample = |i: usize| {
+            let (frame, joint) = ((i / JOINTS) as f64, (i % JOINTS) as f64);
+            let tremor = Real::sin_cos(7.3 * frame + joint).0;
+            exp_one([Real::sin_cos(0.2 * frame + joint).0, 0.05 * tremor, 0.02 * tremor * joint])
+        };
+        (0..FRAMES * JOINTS).flat_map(sample).collect()
+    }
+
+    fn pushed(mut stream: PoseStream, q: &[f64]) -> Result<Vec<f64>, Error> {
+        let mut out = Vec::new();
+        for pose in q.chunks_exact(JOINTS * 4) {
+            out.extend_from_slice(stream.push(pose, None)?.unwrap_or_default());
+        }
+        assert_eq!(stream.pending(), stream.latency());
+        while let Some(pose) = stream.finish() {
+            out.extend_from_slice(pose);
+        }
+        assert_eq!(stream.pending(), 0);
+        assert!(stream.push(&q[..JOINTS * 4], None).is_err(), "the clip is over");
+        Ok(out)
+    }
+
+    fn farthest(a: &[f64], b: &[f64]) -> f64 {
+        assert_eq!(a.len(), b.len());
+        a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn a_stream_gives_what_the_filter_of_the_clip_gives() -> Result<(), Error> {
+        let q = clip();
+        let view = ClipView::new(&q, FRAMES, JOINTS)?;
+        let mut out = vec![0.0; q.len()];
+        let interrupt = Interrupt::new();
+        for lookahead in [0, 2, 5] {
+            let means = NonlocalPoseMeans {
+                search_radius: Some(4),
+                patch_radius: 2,
+                bandwidth: vec![0.05, 0.1, 0.2],
+                distance: Distance::Mean,
+                weights: Weights::Joint,
+                neighbors: None,
+                chart: Chart::Local,
+                boundary: Boundary::Nearest,
+                lookahead: Some(lookahead),
+            };
+            means.filter(view, None, None, ClipMut::new(&mut out, FRAMES, JOINTS)?, &interrupt)?;
+            assert!(farthest(&out, &q) > 1e-3);
+            assert!(farthest(&pushed(means.stream()?, &q)?, &out) < 1e-12);
+            let bilateral = Bilateral {
+                radius: 5,
+                sigma_time: 1.0,
+                sigma_angle: vec![0.2; JOINTS],
+                kernel: Kernel::Classic,
+                iterations: 3,
+                boundary: Boundary::Nearest,
+                lookahead: Some(lookahead),
+            };
+            bilateral.filter(view, None, ClipMut::new(&mut out, FRAMES, JOINTS)?, &interrupt)?;
+            assert!(farthest(&out, &q) > 1e-3);
+            assert!(farthest(&pushed(bilateral.stream()?, &q)?, &out) < 1e-12);
+        }
+        Ok(())
+    }
+}
