@@ -6,19 +6,21 @@ import math
 import numpy as np
 import pytest
 import quatfilt as qf
-from quatfilt.evaluation import nlpm_table1, nlpm_table1_report
-from quatfilt.evaluation.nlpm_table1 import METHODS, NOISY, ORACLES, SIGMA, Noise
+from quatfilt.evaluation import clips, nlpm_table1, nlpm_table1_page, nlpm_table1_picture, nlpm_table1_report
+from quatfilt.evaluation._written import write
+from quatfilt.evaluation.methods import GRID, METHODS, NOISY, ORACLES
+from quatfilt.evaluation.noises import SIGMA, Noise
 
 NOISES = (Noise("1σ", 1), Noise("75σ", 75), Noise("impulses", None))
 
 
 @pytest.fixture(scope="module", name="report")
 def report_of_a_short_walk():
-    whole = nlpm_table1.load(None)[0]
+    whole = clips.load(None)[0]
     motion = whole.motion.replace(
         rotations=whole.motion.rotations[:150], translation=whole.motion.translation[:150]
     )
-    clip = nlpm_table1.Clip("synthetic", "walk", motion, whole.steady)
+    clip = clips.Clip("synthetic", "walk", motion, whole.steady)
     results = nlpm_table1.run([clip], seeds=2, noises=NOISES, workers=1)
     return nlpm_table1_report.Report([clip], NOISES, results, 2, "0.0", "the command")
 
@@ -36,7 +38,7 @@ def test_noise_is_that_of_the_paper(report):
 
 
 def test_an_oracle_is_never_worse_than_the_papers_bandwidth_which_is_on_its_grid(report):
-    assert SIGMA in nlpm_table1.GRID
+    assert SIGMA in GRID
     for noise in NOISES:
         assert report.mean("oracle", noise.name, "psnr") >= report.mean("paper, mean", noise.name, "psnr")
 
@@ -59,7 +61,13 @@ def test_processes_compute_the_same(report):
 
 
 def test_the_page_and_the_numbers_agree(report, tmp_path):
-    written, trouble = nlpm_table1_report.write(report, tmp_path)
+    written, trouble = write(
+        tmp_path,
+        nlpm_table1_report.STEM,
+        page=nlpm_table1_page.markdown(report),
+        numbers=nlpm_table1_report.as_dict(report),
+        draw=lambda path: nlpm_table1_picture.draw(report, path),
+    )
     assert trouble == ""
     assert [path.name for path in written] == ["nlpm-table1.md", "nlpm-table1.json", "nlpm-table1.png"]
     numbers = json.loads((tmp_path / "nlpm-table1.json").read_text(encoding="utf-8"))
@@ -72,9 +80,9 @@ def test_the_page_and_the_numbers_agree(report, tmp_path):
 
 
 def test_clips_are_found_at_any_depth_and_their_unsteady_joints_left_out(data_dir):
-    clips = nlpm_table1.load(data_dir)
-    assert [clip.name for clip in clips] == list(nlpm_table1.CLIPS)
-    for clip in clips:
+    found = clips.load(data_dir)
+    assert [clip.name for clip in found] == list(clips.CLIPS)
+    for clip in found:
         steps = qf.geodesic_distance(clip.motion.rotations[1:], clip.motion.rotations[:-1]).max(axis=0)
         assert (np.degrees(steps[clip.steady]) <= 15).all()
         assert (np.degrees(steps[~clip.steady]) > 15).all()

@@ -52,14 +52,18 @@ def run_nlpm_table1(
 
     Writes nlpm-table1.md, nlpm-table1.json and, with matplotlib, nlpm-table1.png.
     """
-    from quatfilt.evaluation import nlpm_table1, nlpm_table1_report  # noqa: PLC0415 - SciPy would slow down every verb
+    # SciPy would slow down every verb.
+    from quatfilt.evaluation import nlpm_table1, nlpm_table1_page, nlpm_table1_picture, nlpm_table1_report  # noqa: PLC0415
+    from quatfilt.evaluation._written import write  # noqa: PLC0415
+    from quatfilt.evaluation.clips import load  # noqa: PLC0415
+    from quatfilt.evaluation.noises import NOISES  # noqa: PLC0415
 
     _validation.integer(seeds, "--seeds", at_least=1)
     if workers is not None:
         _validation.integer(workers, "--workers", at_least=1)
-    clips = nlpm_table1.load(data)
+    clips = load(data)
     output.mkdir(parents=True, exist_ok=True)
-    processes = workers or min(os.cpu_count() or 1, len(clips) * len(nlpm_table1.NOISES))
+    processes = workers or min(os.cpu_count() or 1, len(clips) * len(NOISES))
     with Progress(
         TextColumn("filtering"),
         BarColumn(),
@@ -77,19 +81,26 @@ def run_nlpm_table1(
         )
     report = nlpm_table1_report.Report(
         clips=clips,
-        noises=nlpm_table1.NOISES,
+        noises=NOISES,
         results=results,
         seeds=seeds,
         version=version("quatfilt"),
         command=f"quatfilt evaluate nlpm-table1{' --data DIR' if data else ''} --seeds {seeds}",
     )
-    written, trouble = nlpm_table1_report.write(report, output)
+    numbers = nlpm_table1_report.as_dict(report)
+    written, trouble = write(
+        output,
+        nlpm_table1_report.STEM,
+        page=nlpm_table1_page.markdown(report),
+        numbers=numbers,
+        draw=lambda path: nlpm_table1_picture.draw(report, path),
+    )
     if json:
-        _output.print_json(nlpm_table1_report.as_dict(report))
+        _output.print_json(numbers)
         return
     _output.say("Mean PSNR over the clips, dB")
     _output.print_table(
-        ("method", *(noise.name for noise in nlpm_table1.NOISES)),
+        ("method", *(noise.name for noise in NOISES)),
         [
             (method, *(_output.number(report.mean(method, noise.name, "psnr")) for noise in report.noises))
             for method in nlpm_table1_report.ROWS
