@@ -1,9 +1,12 @@
 """The recordings that the tables are measured on, and which of their joints count."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from quatfilt._typing import Mask
+import numpy as np
+
+from quatfilt._typing import Array, Mask
 from quatfilt.errors import FileAccessError
 from quatfilt.evaluation.synthetic import walk
 from quatfilt.formats.files import read_motion
@@ -33,24 +36,33 @@ class Clip:
     steady: Mask
 
     @property
+    def steady_rotations(self) -> Array:
+        """Rotations of the joints that count, ``(frames, joints, 4)``."""
+        return np.ascontiguousarray(self.motion.rotations[:, self.steady])
+
+    @property
     def others(self) -> list[str]:
         """Names of the joints that do not count."""
         names = self.motion.skeleton.names
         return [name for name, steady in zip(names, self.steady, strict=True) if not steady]
 
 
-def load(data: Path | None) -> list[Clip]:
-    """Read the clips of the table from a folder, or make the walk.
+def load(data: Path | None, names: Mapping[str, str] = CLIPS, *, longest: int | None = None) -> list[Clip]:
+    """Read clips from a folder, or make the walk.
 
     Parameters
     ----------
     data : Path or None
         Folder that holds ``07_01.amc`` and the others, at any depth; None for the built-in walk.
+    names : mapping
+        The clips, and what happens in them.
+    longest : int or None, frames, default None
+        How much of each clip is taken; None for all.
 
     Returns
     -------
     list of Clip
-        In the order of the table.
+        In the order of the names.
 
     Raises
     ------
@@ -58,21 +70,35 @@ def load(data: Path | None) -> list[Clip]:
         If a clip is not there or does not open.
     """
     if data is None:
-        return [_clip(SYNTHETIC, "walk", walk(seconds=8))]
+        return [_clip(SYNTHETIC, "walk", walk(seconds=8), longest)]
+    paths = {name: find(data, name) for name in names}
+    return [_clip(name, names[name], read_motion(path), longest) for name, path in paths.items()]
+
+
+def find(data: Path, name: str) -> Path:
+    """Find the recording of a name in a folder or below it."""
     if not data.is_dir():
         raise FileAccessError(data, "expected a folder of motion capture")
-    return [_clip(name, what, read_motion(_find(data, name))) for name, what in CLIPS.items()]
-
-
-def _find(data: Path, name: str) -> Path:
     found = sorted(data.rglob(f"{name}.amc"))
     if not found:
         raise FileAccessError(data, f"expected {name}.amc in this folder or below it")
     return found[0]
 
 
-def _clip(name: str, what: str, motion: Motion) -> Clip:
+def _clip(name: str, what: str, whole: Motion, longest: int | None) -> Clip:
+    motion = whole.replace(rotations=whole.rotations[:longest], translation=whole.translation[:longest])
     return Clip(name, what, motion, find_defects(motion.rotations, fps=motion.fps).steady)
 
 
-__all__ = ["CLIPS", "SYNTHETIC", "Clip", "load"]
+def thinned(clip: Clip, every: int) -> Clip:
+    """Return a clip with one frame of `every`; the same joints count."""
+    motion = clip.motion
+    fewer = motion.replace(
+        rotations=motion.rotations[::every],
+        translation=motion.translation[::every],
+        fps=motion.fps / every,
+    )
+    return replace(clip, motion=fewer)
+
+
+__all__ = ["CLIPS", "SYNTHETIC", "Clip", "find", "load", "thinned"]

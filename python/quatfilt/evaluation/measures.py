@@ -13,6 +13,9 @@ from quatfilt.rotations.quaternion import geodesic_distance
 _FARTHEST_SHIFT = 12
 """Frames by which an estimate is looked for before and after its place."""
 
+_ENOUGH = 1000
+"""Frames that are compared at each shift; of longer clips every second, third, … frame."""
+
 
 @dataclass(frozen=True)
 class Measures:
@@ -102,11 +105,12 @@ def delay(truth: Array, other: Array) -> float:
     shifts = np.arange(-_FARTHEST_SHIFT, _FARTHEST_SHIFT + 1)
     if len(truth) < 4 * _FARTHEST_SHIFT or not truth.shape[1]:
         return float("nan")
-    within = truth[_FARTHEST_SHIFT:-_FARTHEST_SHIFT]
+    frames = np.arange(_FARTHEST_SHIFT, len(truth) - _FARTHEST_SHIFT)
+    frames = frames[:: 1 + len(frames) // _ENOUGH]
+    within = truth[frames]
     apart = np.zeros(len(shifts))
     for place, shift in enumerate(shifts):
-        start = _FARTHEST_SHIFT + int(shift)
-        squares = np.square(geodesic_distance(within, other[start : start + len(within)]))
+        squares = np.square(geodesic_distance(within, other[frames + shift]))
         apart[place] = np.nanmean(squares) if np.isfinite(squares).any() else np.nan
     least = int(np.argmin(np.where(np.isnan(apart), np.inf, apart)))
     if not 0 < least < len(shifts) - 1 or np.isnan(apart).any():

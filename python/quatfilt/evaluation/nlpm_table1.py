@@ -9,27 +9,25 @@ import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from quatfilt._typing import Array
 from quatfilt.evaluation.clips import Clip
 from quatfilt.evaluation.measures import Measures, measure
-from quatfilt.evaluation.methods import GRID, METHODS, NOISY, ORACLES
-from quatfilt.evaluation.noises import NOISES, Noise
+from quatfilt.evaluation.methods import ROWS, Clips
+from quatfilt.evaluation.noises import NOISES, Noise, versions
 from quatfilt.evaluation.processes import computed
-from quatfilt.filters.nonlocal_pose_means import nonlocal_pose_means
-from quatfilt.motion.metrics import psnr
+from quatfilt.evaluation.selection import best_of
 
 
 @dataclass(frozen=True)
 class Result:
-    """A method on a clip with a noise: one set of measures for each seed."""
+    """A row on a clip with a noise: one set of measures for each seed."""
 
     clip: str
+    fps: float
     noise: str
-    method: str
-    bandwidth: float | None
-    """Radians, where it is fixed or was chosen; None where the method takes it from the clip."""
+    row: str
+    setting: str
+    """What was chosen, where there was a choice."""
     measures: tuple[Measures, ...]
 
 
@@ -38,6 +36,7 @@ def run(
     *,
     seeds: int,
     noises: Sequence[Noise] = NOISES,
+    rows: Sequence[str] = tuple(ROWS),
     workers: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> list[Result]:
@@ -46,11 +45,13 @@ def run(
     Parameters
     ----------
     clips : sequence of Clip
-        From `load`.
+        From `clips.load`.
     seeds : int
         How many noises of each kind, at least 1.
     noises : sequence of Noise
         The columns.
+    rows : sequence of str
+        Which of `methods.ROWS`.
     workers : int or None, default None
         Processes; None for one on each processor. 1 computes here.
     progress : callable or None, default None
@@ -59,9 +60,9 @@ def run(
     Returns
     -------
     list of Result
-        By clip, noise and method, in the order of the table.
+        By clip, noise and row, in the order given.
     """
-    pieces = [(clip, noise, seeds) for clip, noise in itertools.product(clips, noises)]
+    pieces = [(clip, noise, seeds, tuple(rows)) for clip, noise in itertools.product(clips, noises)]
     results: dict[int, list[Result]] = {}
     for number, result in computed(
         _piece,
@@ -75,32 +76,15 @@ def run(
     return [result for number in sorted(results) for result in results[number]]
 
 
-def _piece(clip: Clip, noise: Noise, seeds: int) -> list[Result]:
-    """Run all methods on one clip with one kind of noise."""
-    truth = np.ascontiguousarray(clip.motion.rotations[:, clip.steady])
-    noisy = [
-        noise.add(truth, np.random.default_rng([seed, *clip.name.encode(), *noise.name.encode()]))
-        for seed in range(seeds)
-    ]
-
-    def result(method: str, bandwidth: float | None, estimates: list[Array]) -> Result:
+def _piece(clip: Clip, noise: Noise, seeds: int, rows: Sequence[str]) -> list[Result]:
+    """Run rows on one clip with one kind of noise."""
+    truth = clip.steady_rotations
+    noisy = Clips.of(versions(clip, noise, seeds), clip.motion.fps)
+    results = []
+    for name in rows:
+        setting, estimates = best_of(ROWS[name].candidates(noisy), truth, noisy)
         found = tuple(_measured(clip, estimate) for estimate in estimates)
-        return Result(clip.name, noise.name, method, bandwidth, found)
-
-    results = [result(NOISY, None, noisy)]
-    for method, options in METHODS.items():
-        estimates = [nonlocal_pose_means(q, **options) for q in noisy]
-        results.append(result(method, options.get("bandwidth"), estimates))
-    for method, options in ORACLES.items():
-        best = max(
-            GRID,
-            key=lambda bandwidth: np.mean(
-                [psnr(truth, nonlocal_pose_means(q, bandwidth=bandwidth, **options)) for q in noisy]
-            ),
-        )
-        results.append(
-            result(method, best, [nonlocal_pose_means(q, bandwidth=best, **options) for q in noisy])
-        )
+        results.append(Result(clip.name, clip.motion.fps, noise.name, name, setting, found))
     return results
 
 

@@ -3,14 +3,16 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from quatfilt.evaluation.clips import Clip
-from quatfilt.evaluation.methods import GRID, METHODS, NOISY, ORACLES
+from quatfilt.evaluation.methods import NOISY, ROWS
 from quatfilt.evaluation.nlpm_table1 import Result
 from quatfilt.evaluation.noises import SIGMA, Noise
+from quatfilt.evaluation.real_jitter import Jitter
 
 STEM = "nlpm-table1"
 
@@ -25,12 +27,10 @@ COLUMNS = (
     ("delay", "delay", 2),
 )
 
-ROWS = (NOISY, *METHODS, *ORACLES)
-
 
 @dataclass(frozen=True)
 class Report:
-    """What was run, and what came out."""
+    """Clips of one frame rate, and what came out."""
 
     clips: Sequence[Clip]
     noises: Sequence[Noise]
@@ -39,42 +39,58 @@ class Report:
     version: str
     command: str
 
-    def of(self, method: str, noise: str, clip: str | None = None) -> list[Result]:
-        """Return the results of a method with a noise, on one clip or on all."""
-        return [
-            result
-            for result in self.results
-            if result.method == method and result.noise == noise and clip in (None, result.clip)
-        ]
+    @property
+    def fps(self) -> float:
+        """Frame rate of the clips."""
+        return self.clips[0].motion.fps
 
-    def mean(self, method: str, noise: str, measure: str, clip: str | None = None) -> float:
-        """Mean over seeds, then over clips."""
+    @cached_property
+    def rows(self) -> list[str]:
+        """Names of the rows, in order."""
+        return list(dict.fromkeys(result.row for result in self.results))
+
+    @property
+    def oracles(self) -> list[str]:
+        """The rows that chose by the result."""
+        return [row for row in self.rows if ROWS[row].oracle]
+
+    @property
+    def fair(self) -> list[str]:
+        """The rows that did not, without the noisy clips themselves."""
+        return [row for row in self.rows if not ROWS[row].oracle and row != NOISY]
+
+    @cached_property
+    def _by_place(self) -> dict[tuple[str, str], list[Result]]:
+        places: dict[tuple[str, str], list[Result]] = {}
+        for result in self.results:
+            places.setdefault((result.row, result.noise), []).append(result)
+        return places
+
+    def of(self, row: str, noise: str, clip: str | None = None) -> list[Result]:
+        """Return the results of a row with a noise, on one clip or on all."""
+        return [result for result in self._by_place[row, noise] if clip in (None, result.clip)]
+
+    def mean(self, row: str, noise: str, measure: str, clip: str | None = None) -> float:
+        """Mean over seeds, then over the clips where it could be measured."""
         means = [
             np.mean([getattr(one, measure) for one in result.measures])
-            for result in self.of(method, noise, clip)
+            for result in self.of(row, noise, clip)
         ]
-        return float(np.mean(means))
+        known = [mean for mean in means if not math.isnan(mean)]
+        return float(np.mean(known)) if known else math.nan
 
-    def spread(self, method: str, noise: str, measure: str) -> float:
+    def spread(self, row: str, noise: str, measure: str) -> float:
         """Deviation over the seeds of the mean over the clips."""
-        values = [[getattr(one, measure) for one in result.measures] for result in self.of(method, noise)]
+        values = [[getattr(one, measure) for one in result.measures] for result in self.of(row, noise)]
         return float(np.std(np.mean(values, axis=0)))
 
+    def best(self, rows: Sequence[str], noise: str) -> str:
+        """Return the row with the greatest mean PSNR."""
+        return max(rows, key=lambda row: self.mean(row, noise, "psnr"))
 
-def as_dict(report: Report) -> dict[str, Any]:
+
+def as_dict(report: Report, slow: Report, jitter: Sequence[Jitter]) -> dict[str, Any]:
     """Return everything as plain values; what could not be measured is None."""
-
-    def summary(result: Result) -> dict[str, Any]:
-        values = {name: [getattr(one, name) for one in result.measures] for _, name, _ in COLUMNS}
-        return {
-            "clip": result.clip,
-            "noise": result.noise,
-            "method": result.method,
-            "bandwidth_radians": result.bandwidth,
-            "mean": {name: _finite(float(np.mean(each))) for name, each in values.items()},
-            "spread": {name: _finite(float(np.std(each))) for name, each in values.items()},
-        }
-
     return {
         "version": report.version,
         "command": report.command,
@@ -91,18 +107,29 @@ def as_dict(report: Report) -> dict[str, Any]:
                 ],
                 "other_joints": clip.others,
             }
-            for clip in report.clips
+            for clip in (*report.clips, *slow.clips)
         ],
-        "methods": {
-            **METHODS,
-            **{name: {**options, "bandwidth": list(GRID)} for name, options in ORACLES.items()},
-        },
-        "results": [summary(result) for result in report.results],
+        "rows": {row: {"oracle": ROWS[row].oracle, "settings": ROWS[row].says} for row in report.rows},
+        "results": [_summary(result) for result in (*report.results, *slow.results)],
+        "real_jitter": [{name: _finite(value) for name, value in vars(one).items()} for one in jitter],
     }
 
 
-def _finite(value: float) -> float | None:
-    return value if math.isfinite(value) else None
+def _summary(result: Result) -> dict[str, Any]:
+    values = {name: [getattr(one, name) for one in result.measures] for _, name, _ in COLUMNS}
+    return {
+        "clip": result.clip,
+        "fps": result.fps,
+        "noise": result.noise,
+        "row": result.row,
+        "setting": result.setting,
+        "mean": {name: _finite(float(np.mean(each))) for name, each in values.items()},
+        "spread": {name: _finite(float(np.std(each))) for name, each in values.items()},
+    }
 
 
-__all__ = ["COLUMNS", "ROWS", "STEM", "Report", "as_dict"]
+def _finite(value: Any) -> Any:
+    return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+__all__ = ["COLUMNS", "STEM", "Report", "as_dict"]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from quatfilt._typing import Array
+from quatfilt.evaluation.clips import Clip
 from quatfilt.noise.noise import add_gaussian_noise, add_impulse_noise
 
 SIGMA = 0.016
@@ -44,4 +45,14 @@ class Noise:
 NOISES = (*(Noise(f"{multiple}σ", multiple) for multiple in MULTIPLES), Noise("impulses", None))
 
 
-__all__ = ["NOISES", "SIGMA", "Noise"]
+def versions(clip: Clip, noise: Noise, seeds: int) -> list[Array]:
+    """Return the steady joints of a clip with noises that the seed, the clip's name and the noise's name choose."""
+    return [
+        noise.add(
+            clip.steady_rotations, np.random.default_rng([seed, *clip.name.encode(), *noise.name.encode()])
+        )
+        for seed in range(seeds)
+    ]
+
+
+__all__ = ["NOISES", "SIGMA", "Noise", "versions"]

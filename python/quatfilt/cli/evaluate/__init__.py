@@ -1,0 +1,22 @@
+"""``quatfilt evaluate``: the papers' tables and figures, measured."""
+
+import typer
+
+from quatfilt.cli.evaluate.nlpm_table1 import nlpm_table1
+
+evaluate = typer.Typer(
+    name="evaluate",
+    help="Measure the methods as the papers do.",
+    rich_markup_mode=None,
+    no_args_is_help=False,
+)
+evaluate.command("nlpm-table1")(nlpm_table1)
+
+
+@evaluate.callback(invoke_without_command=True)
+def _which(context: typer.Context) -> None:
+    if context.invoked_subcommand is None:
+        typer.echo(context.get_help())
+
+
+__all__ = ["evaluate"]
