@@ -2,6 +2,7 @@
 
 import typer
 
+from quatfilt.cli.evaluate.bilateral_figs import bilateral_figs
 from quatfilt.cli.evaluate.nlpm_table1 import nlpm_table1
 
 evaluate = typer.Typer(
@@ -11,6 +12,7 @@ evaluate = typer.Typer(
     no_args_is_help=False,
 )
 evaluate.command("nlpm-table1")(nlpm_table1)
+evaluate.command("bilateral-figs")(bilateral_figs)
 
 
 @evaluate.callback(invoke_without_command=True)
