@@ -4,6 +4,7 @@ import typer
 
 from quatfilt.cli.evaluate.bilateral_figs import bilateral_figs
 from quatfilt.cli.evaluate.nlpm_table1 import nlpm_table1
+from quatfilt.cli.evaluate.smooth_goal import smooth_goal
 
 evaluate = typer.Typer(
     name="evaluate",
@@ -13,6 +14,7 @@ evaluate = typer.Typer(
 )
 evaluate.command("nlpm-table1")(nlpm_table1)
 evaluate.command("bilateral-figs")(bilateral_figs)
+evaluate.command("smooth-goal")(smooth_goal)
 
 
 @evaluate.callback(invoke_without_command=True)
