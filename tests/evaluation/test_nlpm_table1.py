@@ -2,6 +2,7 @@
 
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import quatfilt as qf
 from quatfilt.evaluation import clips, nlpm_table1, nlpm_table1_page, nlpm_table1_picture, nlpm_table1_report
 from quatfilt.evaluation._written import write
 from quatfilt.evaluation.methods import BANDWIDTHS, CLASSICAL, NOISY, PASSES, ROWS, Clips
+from quatfilt.evaluation.nlpm_table1_report import Report
 from quatfilt.evaluation.noises import SIGMA, Noise, versions
 from quatfilt.evaluation.real_jitter import Jitter
 from quatfilt.evaluation.selection import best_of, levels
@@ -24,7 +26,7 @@ def short_walk(frames=150):
 
 def report_of(clip):
     results = nlpm_table1.run([clip], seeds=2, noises=NOISES, workers=1)
-    return nlpm_table1_report.Report([clip], NOISES, results, 2, "0.0", "the command")
+    return Report([clip], NOISES, results, 2, "0.0", "the command")
 
 
 @pytest.fixture(scope="module", name="report")
@@ -151,17 +153,26 @@ def test_the_page_and_the_numbers_agree(report, slow, tmp_path):
         )
         for row in ("bridge", NOISY, "NLPM")
     ]
+    more = Report(
+        [replace(report.clips[0], name="another")],
+        NOISES,
+        [replace(result, clip="another") for result in report.results],
+        2,
+        "0.0",
+        "the command",
+    )
+    tables = nlpm_table1_report.Tables(report, slow, more, jitter)
     written, trouble = write(
         tmp_path,
         nlpm_table1_report.STEM,
-        page=nlpm_table1_page.markdown(report, slow, jitter),
-        numbers=nlpm_table1_report.as_dict(report, slow, jitter),
+        page=nlpm_table1_page.markdown(tables),
+        numbers=nlpm_table1_report.as_dict(tables),
         draw=lambda path: nlpm_table1_picture.draw(report, path),
     )
     assert trouble == ""
     assert [path.name for path in written] == ["nlpm-table1.md", "nlpm-table1.json", "nlpm-table1.png"]
     numbers = json.loads((tmp_path / "nlpm-table1.json").read_text(encoding="utf-8"))
-    assert len(numbers["results"]) == 2 * len(ROWS) * len(NOISES)
+    assert len(numbers["results"]) == 3 * len(ROWS) * len(NOISES)
     gaussian = {
         one["fps"]: one
         for one in numbers["results"]
@@ -173,6 +184,7 @@ def test_the_page_and_the_numbers_agree(report, slow, tmp_path):
         assert f"| Gaussian, oracle | {gaussian[fps]['mean']['psnr']:.2f} ±" in page
     assert "`NLPM, paper, sum` returns the noisy clip as it is (within 0.01 dB) at 1σ" in page
     assert "75σ 7.67%" in page
+    assert "### another, walk (150 frames, " in page
     assert "| as recorded | 114.3 / 113.6 / 0.2 |" in page
     assert "| Gaussian, oracle | 73.89 (6) |" in page
     assert (tmp_path / "nlpm-table1.png").read_bytes().startswith(b"\x89PNG")

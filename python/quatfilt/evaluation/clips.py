@@ -22,6 +22,9 @@ CLIPS = {
 }
 """Recordings of the CMU Graphics Lab Motion Capture Database, and what happens in them."""
 
+MORE = {"02_03": "run", "02_05": "punch", "05_02": "dance, spins"}
+"""More of them, beside the table."""
+
 SYNTHETIC = "synthetic"
 """Name of the built-in walk, for those who have no data."""
 
@@ -101,4 +104,4 @@ def thinned(clip: Clip, every: int) -> Clip:
     return replace(clip, motion=fewer)
 
 
-__all__ = ["CLIPS", "SYNTHETIC", "Clip", "find", "load", "thinned"]
+__all__ = ["CLIPS", "MORE", "SYNTHETIC", "Clip", "find", "load", "thinned"]

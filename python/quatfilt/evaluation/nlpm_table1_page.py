@@ -7,7 +7,7 @@ import numpy as np
 
 from quatfilt.evaluation._markdown import cell, table
 from quatfilt.evaluation.methods import CLASSICAL, NOISY, ROWS
-from quatfilt.evaluation.nlpm_table1_report import COLUMNS, STEM, Report
+from quatfilt.evaluation.nlpm_table1_report import COLUMNS, STEM, Report, Tables
 from quatfilt.evaluation.noises import SIGMA
 from quatfilt.evaluation.real_jitter import AROUND, DEFECTS, Jitter
 
@@ -43,16 +43,18 @@ PRINTED = {
 """The paper's Table I, decibels, beside the rows of ours that correspond: the paper tuned all methods."""
 
 
-def markdown(report: Report, slow: Report, jitter: Sequence[Jitter]) -> str:
-    """Return the page: clips at their own frame rate, the same thinned, and real defects."""
+def markdown(tables: Tables) -> str:
+    """Return the page."""
+    report = tables.table
     return "\n".join(
         [
             *_conditions(report),
             *_findings(report),
             *_psnr(report),
             *_beside_the_paper(report),
-            *_slow(slow),
-            *(_real_jitter(jitter) if jitter else []),
+            *_slow(tables.slow),
+            *(_more(tables.more) if tables.more else []),
+            *(_real_jitter(tables.jitter) if tables.jitter else []),
             *_all_measures(report),
             *_by_clip(report),
         ]
@@ -242,6 +244,22 @@ def _slow(slow: Report) -> list[str]:
     return [*lines, ""]
 
 
+def _more(more: Report) -> list[str]:
+    lines = ["## More clips", "", "PSNR in dB, 120 frames per second.", ""]
+    names = [noise.name for noise in more.noises]
+    for clip in more.clips:
+        joints = f"{len(clip.motion)} frames, {int(clip.steady.sum())} steady joints"
+        lines += [f"### {clip.name}, {clip.what} ({joints})", "", *_clip_table(more, clip.name, names), ""]
+    return lines
+
+
+def _clip_table(report: Report, clip: str, names: Sequence[str]) -> list[str]:
+    return table(
+        ("row", *names),
+        [(row, *(f"{report.mean(row, n, 'psnr', clip):.2f}" for n in names)) for row in report.rows],
+    )
+
+
 def _real_jitter(jitter: Sequence[Jitter]) -> list[str]:
     lines = [
         "## Real defects",
@@ -315,12 +333,7 @@ def _by_clip(report: Report) -> list[str]:
     lines = ["## PSNR by clip", "", f"What the oracles chose stands in `{STEM}.json`.", ""]
     names = [noise.name for noise in report.noises]
     for clip in report.clips:
-        lines += [f"### {clip.name}, {clip.what}", ""]
-        lines += table(
-            ("row", *names),
-            [(row, *(f"{report.mean(row, n, 'psnr', clip.name):.2f}" for n in names)) for row in report.rows],
-        )
-        lines.append("")
+        lines += [f"### {clip.name}, {clip.what}", "", *_clip_table(report, clip.name, names), ""]
     return lines
 
 

@@ -89,12 +89,32 @@ class Report:
         return max(rows, key=lambda row: self.mean(row, noise, "psnr"))
 
 
-def as_dict(report: Report, slow: Report, jitter: Sequence[Jitter]) -> dict[str, Any]:
+@dataclass(frozen=True)
+class Tables:
+    """Everything on the page."""
+
+    table: Report
+    """Of Table I."""
+    slow: Report
+    """The same clips thinned."""
+    more: Report | None
+    """More clips."""
+    jitter: Sequence[Jitter]
+    """Real defects."""
+
+    @property
+    def reports(self) -> list[Report]:
+        """All that was measured with added noise."""
+        return [report for report in (self.table, self.slow, self.more) if report is not None]
+
+
+def as_dict(tables: Tables) -> dict[str, Any]:
     """Return everything as plain values; what could not be measured is None."""
+    first = tables.table
     return {
-        "version": report.version,
-        "command": report.command,
-        "seeds": report.seeds,
+        "version": first.version,
+        "command": first.command,
+        "seeds": first.seeds,
         "sigma_radians": SIGMA,
         "clips": [
             {
@@ -107,11 +127,12 @@ def as_dict(report: Report, slow: Report, jitter: Sequence[Jitter]) -> dict[str,
                 ],
                 "other_joints": clip.others,
             }
-            for clip in (*report.clips, *slow.clips)
+            for report in tables.reports
+            for clip in report.clips
         ],
-        "rows": {row: {"oracle": ROWS[row].oracle, "settings": ROWS[row].says} for row in report.rows},
-        "results": [_summary(result) for result in (*report.results, *slow.results)],
-        "real_jitter": [{name: _finite(value) for name, value in vars(one).items()} for one in jitter],
+        "rows": {row: {"oracle": ROWS[row].oracle, "settings": ROWS[row].says} for row in first.rows},
+        "results": [_summary(result) for report in tables.reports for result in report.results],
+        "real_jitter": [{name: _finite(value) for name, value in vars(one).items()} for one in tables.jitter],
     }
 
 
@@ -132,4 +153,4 @@ def _finite(value: Any) -> Any:
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-__all__ = ["COLUMNS", "STEM", "Report", "as_dict"]
+__all__ = ["COLUMNS", "STEM", "Report", "Tables", "as_dict"]

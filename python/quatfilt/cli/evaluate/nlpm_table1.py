@@ -1,6 +1,5 @@
 """``quatfilt evaluate nlpm-table1``: Table I of Dean and Lewis."""
 
-import os
 from importlib.metadata import version
 
 from quatfilt import _validation
@@ -39,7 +38,7 @@ def nlpm_table1(
     )
     from quatfilt.evaluation._written import write  # noqa: PLC0415
     from quatfilt.evaluation.baselines import pywavelets  # noqa: PLC0415
-    from quatfilt.evaluation.clips import Clip, load, thinned  # noqa: PLC0415
+    from quatfilt.evaluation.clips import MORE, Clip, load, thinned  # noqa: PLC0415
     from quatfilt.evaluation.noises import NOISES  # noqa: PLC0415
 
     _validation.integer(seeds, "--seeds", at_least=1)
@@ -48,31 +47,29 @@ def nlpm_table1(
     pywavelets()
     clips = load(data)
     slow = [thinned(clip, 4) for clip in clips]
+    more = load(data, MORE) if data is not None else []
     output.mkdir(parents=True, exist_ok=True)
     with progress("filtering") as done:
-        results = nlpm_table1.run(
-            [*clips, *slow], seeds=seeds, workers=workers or os.cpu_count() or 1, progress=done
-        )
-    jitter = real_jitter.run(data) if data is not None else []
+        results = nlpm_table1.run([*clips, *slow, *more], seeds=seeds, workers=workers, progress=done)
     command = f"quatfilt evaluate nlpm-table1{' --data DIR' if data else ''} --seeds {seeds}"
 
     def report(part: list[Clip]) -> nlpm_table1_report.Report:
-        fps = part[0].motion.fps
-        return nlpm_table1_report.Report(
-            clips=part,
-            noises=NOISES,
-            results=[result for result in results if result.fps == fps],
-            seeds=seeds,
-            version=version("quatfilt"),
-            command=command,
-        )
+        which = {(clip.name, clip.motion.fps) for clip in part}
+        found = [result for result in results if (result.clip, result.fps) in which]
+        return nlpm_table1_report.Report(part, NOISES, found, seeds, version("quatfilt"), command)
 
-    whole, thin = report(clips), report(slow)
-    numbers = nlpm_table1_report.as_dict(whole, thin, jitter)
+    whole = report(clips)
+    tables = nlpm_table1_report.Tables(
+        table=whole,
+        slow=report(slow),
+        more=report(more) if more else None,
+        jitter=real_jitter.run(data) if data is not None else [],
+    )
+    numbers = nlpm_table1_report.as_dict(tables)
     written, trouble = write(
         output,
         nlpm_table1_report.STEM,
-        page=nlpm_table1_page.markdown(whole, thin, jitter),
+        page=nlpm_table1_page.markdown(tables),
         numbers=numbers,
         draw=lambda path: nlpm_table1_picture.draw(whole, path),
     )
