@@ -96,17 +96,13 @@ def _findings(figures: Figures) -> list[str]:
     )
     drawn = figures.drawn
     true = speed(drawn.truth, drawn.joint)
-    shares = ", ".join(
-        f"{name} {float(speed(motion, drawn.joint).mean() / true.mean()):.2f}"
-        for name, motion in drawn.motions.items()
+    found = {name: speed(motion, drawn.joint) for name, motion in drawn.motions.items()}
+    shares = "; ".join(
+        f"{name}: {values.mean() / true.mean():.2f} and {values.max() / true.max():.2f}"
+        for name, values in found.items()
     )
     lines.append(
-        f"- Mean angular speed of `{drawn.joint}` as a share of the truth's (one seed): {shares}. Peak: "
-        + ", ".join(
-            f"{name} {float(speed(motion, drawn.joint).max() / true.max()):.2f}"
-            for name, motion in drawn.motions.items()
-        )
-        + "."
+        f"- Mean and peak angular speed of `{drawn.joint}` as shares of the truth's, one seed, {FIVE} passes: {shares}."
     )
     return [*lines, *_drift(figures.comparisons), ""]
 
