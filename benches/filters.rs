@@ -74,7 +74,7 @@ fn orientation_filters<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Resu
     let interrupt = Interrupt::new();
     let filter = OrientationFilter { mask: vec![1.0; 9], iterations: 1, boundary: Boundary::Mirror };
     timer.threads::<T, _, _>("filters/orientation_filter", size, || {
-        filter.filter(clip, ClipMut::new(&mut out, frames, joints)?, &interrupt)
+        filter.filter(clip, None, ClipMut::new(&mut out, frames, joints)?, &interrupt)
     })?;
     let filter = Bilateral {
         radius: 4,

@@ -75,7 +75,9 @@ def nonlocal_pose_means(
 ) -> tuple[Array, Array | None]: ...
 
 # filters/orientation_filter
-def orientation_filter(q: Array, mask: NDArray[np.float64], iterations: int, boundary: str, /) -> Array: ...
+def orientation_filter(
+    q: Array, translation: Array | None, mask: NDArray[np.float64], iterations: int, boundary: str, /
+) -> tuple[Array, Array | None]: ...
 
 # filters/stream
 @final

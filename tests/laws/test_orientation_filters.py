@@ -14,13 +14,13 @@ TWICE = 2
 
 FILTERS = (
     {
-        "binomial": lambda backend, q: backend.orientation_filter(q, BINOMIAL, TWICE, "mirror"),
+        "binomial": lambda backend, q: backend.orientation_filter(q, None, BINOMIAL, TWICE, "mirror")[0],
         "savitzky_golay": lambda backend, q: backend.orientation_filter(
-            q, np.array([-3.0, 12, 17, 12, -3]), TWICE, "linear"
-        ),
+            q, None, np.array([-3.0, 12, 17, 12, -3]), TWICE, "linear"
+        )[0],
         "one_sided": lambda backend, q: backend.orientation_filter(
-            q, np.array([1.0, 2, 3, 0, 0]), TWICE, "nearest"
-        ),
+            q, None, np.array([1.0, 2, 3, 0, 0]), TWICE, "nearest"
+        )[0],
     }
     | {
         kernel: lambda backend, q, kernel=kernel: backend.bilateral(
@@ -96,16 +96,16 @@ def test_constant_clips_stay(backend, name):
 @pytest.mark.parametrize("mask", [[1.0], [3.0], [0, 0, -2, 0, 0]])
 def test_masks_of_one_weight_change_nothing(backend, mask):
     q, _ = sample(2)
-    result = backend.orientation_filter(q, np.array(mask, float), 3, "mirror")
+    result, _ = backend.orientation_filter(q, None, np.array(mask, float), 3, "mirror")
     assert clips.angles(result, q).max() < tolerances.ALGEBRA
 
 
 def test_a_mask_of_one_neighbour_shifts_time(backend):
     """The increment to the neighbour, and to nothing else, is taken whole."""
     q, _ = sample(3)
-    result = backend.orientation_filter(q, np.array([0.0, 0, 1]), 1, "mirror")
+    result, _ = backend.orientation_filter(q, None, np.array([0.0, 0, 1]), 1, "mirror")
     assert clips.angles(result[:-1], q[1:]).max() < tolerances.FLOAT64
-    result = backend.orientation_filter(q, np.array([1.0, 0, 0]), 1, "mirror")
+    result, _ = backend.orientation_filter(q, None, np.array([1.0, 0, 0]), 1, "mirror")
     assert clips.angles(result[1:], q[:-1]).max() < tolerances.FLOAT64
 
 
@@ -116,7 +116,8 @@ def test_angles_about_one_axis_are_averaged(backend, mask):
     angle = np.arange(200) * 0.3 + np.sin(np.arange(200) / 9) + rng.normal(0, 0.1, 200)
     axis = np.array([1.0, 2, 2]) / 3
     weights = np.array(mask, float)
-    result = backend.orientation_filter(clips.from_vectors(angle[:, None, None] * axis), weights, 1, "mirror")
+    turned = clips.from_vectors(angle[:, None, None] * axis)
+    result, _ = backend.orientation_filter(turned, None, weights, 1, "mirror")
     padded = np.pad(angle, 2, mode="reflect")
     means = np.convolve(padded, weights[::-1] / weights.sum(), mode="valid")
     expected = clips.from_vectors(means[:, None, None] * axis)
@@ -129,7 +130,7 @@ def test_without_a_scale_of_angles_the_bilateral_filter_has_one_mask(backend, ke
     lags = np.abs(np.arange(-3, 4))
     mask = np.exp(-(lags if kernel == "gaussian" else lags**2) / (2 * 1.5**2))
     result, _ = backend.bilateral(q, None, 3, 1.5, np.full(3, np.inf), kernel, 2, "linear", -1)
-    expected = backend.orientation_filter(q, mask, 2, "linear")
+    expected, _ = backend.orientation_filter(q, None, mask, 2, "linear")
     assert clips.angles(result, expected).max() < tolerances.FLOAT64
 
 
@@ -142,7 +143,7 @@ def test_a_step_stays_while_the_noise_goes(backend):
     error = clips.angles(result, step)
     assert np.sqrt(np.mean(error**2)) < 0.5 * np.sqrt(np.mean(clips.angles(q, step) ** 2))
     mask = np.exp(-np.abs(np.arange(-4, 5)) / 2)
-    blurred = backend.orientation_filter(q, mask, 5, "mirror")
+    blurred, _ = backend.orientation_filter(q, None, mask, 5, "mirror")
     assert clips.angles(blurred, step)[58:62].min() > 5 * error[58:62].max()
 
 
@@ -203,9 +204,27 @@ def test_five_passes_of_the_squared_kernel_filter_and_of_the_printed_one_do_not(
 def test_a_binomial_mask_removes_noise(backend):
     """With the signs of the printed equation (3) it adds some."""
     clean, q = paper_noise()
-    result = backend.orientation_filter(q, BINOMIAL, 1, "mirror")
+    result, _ = backend.orientation_filter(q, None, BINOMIAL, 1, "mirror")
     error, noise = (np.mean(clips.angles(x, clean) ** 2) for x in (result, q))
     assert error < 0.4 * noise
+
+
+@pytest.mark.parametrize(("boundary", "mode"), [("mirror", "reflect"), ("nearest", "edge")])
+def test_the_mask_is_that_of_the_translation_too(backend, boundary, mode):
+    q, rng = sample(9, 40)
+    path = clips.path(rng, 40)
+    mask = np.array([1.0, 2, 3, 0, 0])
+    _, moved = backend.orientation_filter(q, path, mask, 1, boundary)
+    padded = np.pad(path, ((2, 2), (0, 0)), mode=mode)
+    expected = [np.convolve(column, mask[::-1] / mask.sum(), "valid") for column in padded.T]
+    np.testing.assert_allclose(moved, np.transpose(expected), rtol=0, atol=tolerances.FLOAT64)
+
+
+def test_a_held_velocity_keeps_a_straight_path(backend):
+    q, _ = sample(10, 40)
+    path = np.linspace([0.0, 0, 0], [9, -3, 1], 40)
+    _, moved = backend.orientation_filter(q, path, BINOMIAL, 3, "linear")
+    np.testing.assert_allclose(moved, path, rtol=0, atol=tolerances.FLOAT64)
 
 
 def test_the_translation_has_the_weights_of_the_root(backend):

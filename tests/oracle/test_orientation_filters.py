@@ -50,7 +50,7 @@ def sample(frames):
 @pytest.mark.parametrize("frames", [2, 3, 20])
 def test_orientation_filter(backend, frames, boundary):
     q, mask = sample(frames), np.array([1.0, -0.5, 2, 3, 1, 0, 0.3])
-    result = backend.orientation_filter(q, mask, 2, boundary)
+    result, _ = backend.orientation_filter(q, None, mask, 2, boundary)
     loops = expected(q, lambda r, _angle: mask[r + RADIUS], 2, boundary)
     assert clips.angles(result, loops).max() < tolerances.FLOAT64
 

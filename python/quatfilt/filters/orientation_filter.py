@@ -1,6 +1,6 @@
 """Orientation filters: a mask for numbers becomes a filter for rotations."""
 
-from typing import cast
+from typing import Any, cast
 
 from numpy.typing import ArrayLike
 
@@ -84,17 +84,46 @@ def orientation_filter(
     >>> error(clean) < 0.6 * error(noisy)
     True
     """
-    clip = _spans.prepare(q, gaps=gaps, max_gap=max_gap, fps=fps, confidence=None, scalar_first=scalar_first)
+    return with_translation(
+        q,
+        None,
+        mask=mask,
+        iterations=iterations,
+        boundary=boundary,
+        gaps=gaps,
+        max_gap=max_gap,
+        fps=fps,
+        scalar_first=scalar_first,
+    )[0]
+
+
+def with_translation(
+    q: ArrayLike,
+    translation: Array | None,
+    *,
+    mask: ArrayLike,
+    iterations: int,
+    boundary: Boundary,
+    **missing: Any,
+) -> tuple[Array, Array | None]:
+    """Filter as `orientation_filter` does, and a translation ``(frames, 3)`` with the same mask."""
+    clip = _spans.prepare(q, confidence=None, **missing)
     options = (
         _validation.mask(mask, "mask"),
         _validation.integer(iterations, "iterations", at_least=1),
         _validation.choice(boundary, "boundary", BOUNDARIES),
     )
+    moved = None if translation is None else translation.astype(clip.rotations.dtype)
 
-    def run(rotations: Array, _trust: Array | None, _span: _spans.Span) -> Array:
-        return cast("Array", ops().orientation_filter(rotations, *options))
+    def run(rotations: Array, _trust: Array | None, span: _spans.Span) -> Array:
+        # A translation without its root may come from anywhere.
+        part = moved[span.frames] if moved is not None and 0 in span.joints else None
+        result, along = ops().orientation_filter(rotations, part, *options)
+        if moved is not None and along is not None:
+            moved[span.frames] = along
+        return cast("Array", result)
 
-    return clip.filter(run)
+    return clip.filter(run), moved
 
 
-__all__ = ["orientation_filter"]
+__all__ = ["orientation_filter", "with_translation"]

@@ -22,16 +22,24 @@ def noisy(rng, frames, joints, sigma=0.05):
     return clips.flipped(rng, clips.noisy(rng, clips.smooth(rng, frames, joints, swing=2), sigma))
 
 
-def agree(q, mask, iterations=1, boundary="mirror"):
+def agree(q, mask, iterations=1, boundary="mirror", translation=None):
     mask = np.asarray(mask, np.float64)
-    before = q.tobytes()
-    result, expected = (
-        backend.orientation_filter(q, mask, iterations, boundary) for backend in (_core, _reference)
+    translation = None if translation is None else np.require(translation, q.dtype, "C")
+    arguments = (q, translation, mask, iterations, boundary)
+    before = [x.tobytes() for x in arguments[:3] if x is not None]
+    (result, moved), (expected, path) = (
+        backend.orientation_filter(*arguments) for backend in (_core, _reference)
     )
-    assert q.tobytes() == before, "the input was written"
+    assert [x.tobytes() for x in arguments[:3] if x is not None] == before, "an input was written"
     assert result.dtype == expected.dtype == q.dtype
     assert result.shape == expected.shape == q.shape
-    same_samples(result, expected, tolerances.filtered(q.dtype))
+    tolerance = tolerances.filtered(q.dtype)
+    same_samples(result, expected, tolerance)
+    if path is None:
+        assert moved is None
+    else:
+        assert moved.dtype == path.dtype
+        np.testing.assert_allclose(moved, path, rtol=0, atol=tolerance)
 
 
 @given(
@@ -42,17 +50,22 @@ def agree(q, mask, iterations=1, boundary="mirror"):
     mask=st.sampled_from(MASKS),
     iterations=st.integers(1, 4),
     boundary=st.sampled_from(BOUNDARIES),
+    along=st.booleans(),
 )
-def test_any_options(seed, frames, joints, dtype, mask, iterations, boundary):
-    q = noisy(np.random.default_rng(seed), frames, max(joints, 1), 0.1)[:, :joints]
-    agree(np.ascontiguousarray(q, dtype), mask, iterations, boundary)
+def test_any_options(seed, frames, joints, dtype, mask, iterations, boundary, along):
+    rng = np.random.default_rng(seed)
+    q = noisy(rng, frames, max(joints, 1), 0.1)[:, :joints]
+    translation = clips.path(rng, frames) if along else None
+    agree(np.ascontiguousarray(q, dtype), mask, iterations, boundary, translation)
 
 
 @pytest.mark.parametrize("dtype", DTYPES)
 @pytest.mark.parametrize(("joints", "lengths"), [(1, [2047, 2048, 2049]), (31, [127, 129, 319, 321, 577])])
 def test_around_the_ends_of_tiles(joints, lengths, dtype):
     for frames in lengths:
-        agree(noisy(np.random.default_rng(frames), frames, joints).astype(dtype), MASKS[2], 2)
+        rng = np.random.default_rng(frames)
+        q = noisy(rng, frames, joints).astype(dtype)
+        agree(q, MASKS[2], 2, translation=clips.path(rng, frames))
 
 
 @pytest.mark.parametrize("dtype", DTYPES)

@@ -6,12 +6,14 @@ J. Lee and S. Y. Shin, *General Construction of Time-Domain Filters for Orientat
 import numpy as np
 
 from quatfilt._reference._arrays import Reals
-from quatfilt._reference.filters.boundary import Boundary, extend_rotations
+from quatfilt._reference.filters.boundary import Boundary, extend_rotations, extend_vectors
 from quatfilt._reference.filters.nonlocal_pose_means import in_hemisphere_of
 from quatfilt._reference.rotations.quaternion import between, exp, log_short, multiply, normalize
 
 
-def orientation_filter(q: Reals, mask: Reals, iterations: int, boundary: Boundary) -> Reals:
+def orientation_filter(
+    q: Reals, translation: Reals | None, mask: Reals, iterations: int, boundary: Boundary
+) -> tuple[Reals, Reals | None]:
     """Move each frame by a weighted sum of the rotations from frame to frame around it.
 
     With the increments `ω_i = log(q_i⁻¹ q_{i+1})`, each the shorter way, and the mask `m_{−k} … m_k`, whose sum is made 1,
@@ -24,6 +26,8 @@ def orientation_filter(q: Reals, mask: Reals, iterations: int, boundary: Boundar
     ----------
     q : array (frames, joints, 4)
         Rotations without missing samples.
+    translation : array (frames, 3) or None
+        Positions of the root, averaged with the mask in each pass.
     mask : array (2k + 1,)
         Weights of the frames `t − k … t + k`; their sum is not 0.
     iterations : int
@@ -33,21 +37,30 @@ def orientation_filter(q: Reals, mask: Reals, iterations: int, boundary: Boundar
 
     Returns
     -------
-    array (frames, joints, 4)
+    rotations : array (frames, joints, 4)
         Unit quaternions, continuous in sign from the hemisphere of the input's first frame.
+    translation : array (frames, 3) or None
     """
     frames, joints = q.shape[:2]
     if frames < 2 or joints == 0:
-        return normalize(q)
+        return normalize(q), None if translation is None else translation.copy()
+    radius = len(mask) // 2
     result = normalize(q.astype(np.float64))
+    moved = None if translation is None else translation.astype(np.float64)
     b = coefficients(mask)
     for _ in range(iterations):
-        increments = increments_around(result, len(mask) // 2, boundary)
+        if moved is not None:
+            around = extend_vectors(moved, radius, boundary)
+            moved = np.zeros((frames, 3))
+            for j in range(2 * radius + 1):
+                moved += mask[j] / mask.sum() * around[j : j + frames]
+        increments = increments_around(result, radius, boundary)
         turn = np.zeros((frames, joints, 3))
         for r in range(len(b)):
             turn += b[r] * increments[r : r + frames]
         result = normalize(multiply(result, exp(turn)))
-    return in_hemisphere_of(result, q).astype(q.dtype)
+    rotations = in_hemisphere_of(result, q).astype(q.dtype)
+    return rotations, None if translation is None or moved is None else moved.astype(translation.dtype)
 
 
 def coefficients(mask: Reals) -> Reals:

@@ -8,6 +8,7 @@
 //! b_r    = −Σ_{j=−k}^{r} m_j   (r < 0),     Σ_{j=r+1}^{k} m_j   (r ≥ 0)
 //! ```
 
+pub use super::local::Translation;
 use super::local::{self, Local, Way};
 use super::samples::LANE;
 use crate::clip::Planes;
@@ -28,21 +29,24 @@ pub struct OrientationFilter {
 }
 
 impl OrientationFilter {
-    /// Filters `clip` along time into `out`, `(frames, joints, 4)`, sign-continuous from the hemisphere of the first frame.
+    /// Filters `clip` along time into `out`, `(frames, joints, 4)`, sign-continuous from the hemisphere of the first frame,
+    /// and the translation with the same mask.
     ///
     /// No sample may be missing. Quaternions need not have length 1 exactly.
     ///
     /// # Errors
-    /// [`Error::Length`] if the clips differ in length; [`Error::Parameter`] for a mask of even length or without a sum;
+    /// [`Error::Length`] if slices do not fit together; [`Error::Parameter`] for a mask of even length or without a sum;
     /// [`Error::Interrupted`].
     pub fn filter<T: Real>(
         &self,
         clip: ClipView<'_, T>,
+        translation: Option<Translation<'_, T>>,
         out: ClipMut<'_, T>,
         interrupt: &Interrupt,
     ) -> Result<(), Error> {
         let coefficients = self.coefficients()?.into_iter().map(T::from_f64).collect();
-        local::run(&Mask { coefficients }, (self.iterations, self.boundary), clip, None, out, interrupt)
+        let mask = Mask { coefficients };
+        local::run(&mask, (self.iterations, self.boundary), clip, translation, out, interrupt)
     }
 
     /// Coefficients `b_{−k} … b_{k−1}` of the increments.
