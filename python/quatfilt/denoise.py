@@ -1,54 +1,62 @@
 """The way from a noisy clip or motion to a clean one that the command line runs."""
 
-from typing import Any, cast, overload
+from collections.abc import Sequence
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from quatfilt import _validation
-from quatfilt._typing import Array, Mask
-from quatfilt.filters import bilateral, nonlocal_pose_means
+from quatfilt import _validation, chain
+from quatfilt._typing import Array
+from quatfilt.methods import METHODS
 from quatfilt.motion.motion import Motion
-
-METHODS = ("auto", "nonlocal_pose_means", "bilateral")
-"""What `denoise` can run; "auto" is the best that this version has."""
-
-
-_FILTERS: dict[str, tuple[Any, Any]] = {
-    "nonlocal_pose_means": (nonlocal_pose_means.nonlocal_pose_means, nonlocal_pose_means.with_translation),
-    "bilateral": (bilateral.bilateral, bilateral.with_translation),
-}
-"""Each method's filter of rotations, and of rotations with the translation of the root."""
 
 
 @overload
 def denoise(
-    motion_or_rotations: Motion, *, method: str = "auto", translation: bool = True, **options: Any
+    motion_or_rotations: Motion,
+    *,
+    method: str | Sequence[str] = "auto",
+    translation: bool = True,
+    preset: str | None = None,
+    **options: Any,
 ) -> Motion: ...
 @overload
 def denoise(
-    motion_or_rotations: ArrayLike, *, method: str = "auto", translation: bool = True, **options: Any
+    motion_or_rotations: ArrayLike,
+    *,
+    method: str | Sequence[str] = "auto",
+    translation: bool = True,
+    preset: str | None = None,
+    **options: Any,
 ) -> Array: ...
 def denoise(
     motion_or_rotations: Motion | ArrayLike,
     *,
-    method: str = "auto",
+    method: str | Sequence[str] = "auto",
     translation: bool = True,
+    preset: str | None = None,
     **options: Any,
 ) -> Motion | Array:
-    """Denoise a motion, or a clip of rotations.
+    """Denoise a motion, or a clip of rotations, with one filter or several.
 
     Parameters
     ----------
     motion_or_rotations : Motion or array_like, shape (frames, joints, 4) or (frames, 4)
         What to clean. Missing samples are filled in, unless ``gaps=`` says otherwise.
-    method : {"auto", "nonlocal_pose_means", "bilateral"}, default "auto"
-        The filter. "auto" is `nonlocal_pose_means` with a bandwidth from the estimated noise.
+    method : str or list of str, default "auto"
+        The filter, or filters that run in this order. "auto" is `nonlocal_pose_means` with a bandwidth from the estimated
+        noise or, with a preset, the preset's chain.
     translation : bool, default True
-        Whether a motion's root translation is filtered too, with the weights of its poses; gaps in it are then filled
-        along straight lines. With ``search_radius=None`` it is left alone: a pose that comes back comes back elsewhere.
+        Whether a motion's root translation is filtered too, by each step in its own way; gaps in it are then filled along
+        straight lines. A step with ``search_radius=None`` leaves it alone: a pose that comes back comes back elsewhere.
+    preset : {"optical", "inertial", "video"} or None, default None
+        A chain with values for a kind of recording; what else is given goes before it. Beside methods of the caller's, it
+        gives values to the steps that it has.
     **options
-        Options of the filter. A motion knows its frame rate: ``fps`` need not be given.
+        Options of the filters. A plain keyword is for the one step that has it; `boundary`, `confidence`, `fps`, `gaps`,
+        `max_gap` and `scalar_first` are for all steps. The name of a step with a dict is for that step, as in
+        ``bilateral={"radius": 2}``. A motion knows its frame rate: ``fps`` need not be given.
 
     Returns
     -------
@@ -58,11 +66,18 @@ def denoise(
     Raises
     ------
     ValueError, TypeError
-        If the method or one of its options is not what was stated; the message names it.
+        If a method, a preset or an option is not what was stated; the message names it. Nothing is computed before all
+        steps have seen their options.
 
     See Also
     --------
-    nonlocal_pose_means, bilateral : The filters, their options and their cost.
+    nonlocal_pose_means, bilateral, orientation_filter : Filters, their options and their cost.
+    report : What a filter did.
+
+    Notes
+    -----
+    A chain is its steps one after the other, each with ``gaps="keep"`` but for the last: missing samples are filled anew
+    by each step from neighbours that are the cleaner, and no step trusts what another one filled in.
 
     Examples
     --------
@@ -72,41 +87,26 @@ def denoise(
     >>> noisy = qf.add_gaussian_noise(swing, sigma=0.03, rng=0)
     >>> qf.denoise(noisy).shape
     (240, 4)
+    >>> twice = qf.denoise(noisy, method=["nonlocal_pose_means", "bilateral"], radius=2)
+    >>> error = lambda q: float(np.degrees(qf.geodesic_distance(swing, q)).mean())
+    >>> error(twice) < error(qf.denoise(noisy)) < error(noisy)
+    True
     """
-    name = _validation.choice(method, "method", METHODS)
-    name = "nonlocal_pose_means" if name == "auto" else name
-    run, with_translation = _FILTERS[name]
     if not isinstance(translation, (bool, np.bool_)):
         raise TypeError(f"translation: expected True or False, got {type(translation).__name__}")
-    defaults = cast("dict[str, Any]", run.__kwdefaults__)
-    unknown = [option for option in options if option not in defaults]
-    if unknown:
-        raise TypeError(f"{unknown[0]}: expected an option of {name} ({', '.join(defaults)}), got this name")
-    if not isinstance(motion_or_rotations, Motion):
-        return cast("Array", run(motion_or_rotations, **options))
-    motion = motion_or_rotations
-    chosen = {**defaults, "fps": motion.fps, **options}
-    missing: Mask = np.asarray(np.isnan(motion.translation).any(axis=1))
-    # The bilateral filter has no `search_radius`: its window is always near in time.
-    along = translation and chosen.get("search_radius", 0) is not None
-    moved = _straightened(motion.translation, missing) if along else None
-    rotations, moved = with_translation(motion.rotations, moved, **chosen)
-    if moved is None:
-        return motion.replace(rotations=rotations)
-    if chosen["gaps"] == "keep":
-        moved[missing] = np.nan
-    return motion.replace(rotations=rotations, translation=moved)
-
-
-def _straightened(translation: Array, missing: Mask) -> Array | None:
-    """Return a translation with its gaps filled along straight lines; None where all of it is missing."""
-    if missing.all():
-        return None
-    if not missing.any():
-        return translation
-    frames = np.arange(len(translation))
-    columns = [np.interp(frames, frames[~missing], column[~missing]) for column in translation.T]
-    return np.stack(columns, axis=1).astype(translation.dtype)
+    if isinstance(motion_or_rotations, Motion):
+        motion = motion_or_rotations
+        if "scalar_first" in options:
+            raise TypeError("scalar_first: expected no such option with a Motion, got one")
+        steps = chain.plan(method, preset, {"fps": motion.fps, **options})
+        rotations, moved = chain.run(steps, motion.rotations, motion.translation if translation else None)
+        changes = {} if moved is None else {"translation": moved}
+        return motion.replace(rotations=rotations, **changes)
+    steps = chain.plan(method, preset, options)
+    scalar_first = options.get("scalar_first", True)
+    array = _validation.quaternions(motion_or_rotations, "rotations", scalar_first=scalar_first)
+    rotations, _ = chain.run(steps, array)
+    return _validation.scalar_order(rotations, scalar_first=scalar_first)
 
 
 __all__ = ["METHODS", "denoise"]

@@ -8,7 +8,6 @@ import pytest
 import quatfilt as qf
 import tolerances
 from layouts import LAYOUTS
-from quatfilt.denoise import METHODS
 from scipy.spatial.transform import Rotation
 
 FILTERS = {
@@ -508,98 +507,3 @@ def test_confidence_per_frame_and_without_a_number():
     unknown = np.where(trust == 0, np.nan, trust)
     expected = qf.nonlocal_pose_means(q, confidence=trust)
     np.testing.assert_array_equal(qf.nonlocal_pose_means(q, confidence=unknown), expected)
-
-
-# ---- denoise
-
-
-@pytest.mark.parametrize("method", ["gauss", "", None, 1])
-def test_unknown_methods(method):
-    message = refused(ValueError, qf.denoise, clip(), method=method)
-    assert message == f"method: expected one of {', '.join(map(repr, METHODS))}, got {method!r}"
-
-
-def test_unknown_options():
-    message = refused(TypeError, qf.denoise, clip(), radius=3)
-    assert message.startswith(
-        "radius: expected an option of nonlocal_pose_means (search_radius, patch_radius, "
-    )
-    assert message.endswith("), got this name")
-
-
-@pytest.mark.parametrize("value", [None, "no", 0])
-def test_translation_is_a_switch(value):
-    message = refused(TypeError, qf.denoise, clip(), translation=value)
-    assert message == f"translation: expected True or False, got {type(value).__name__}"
-
-
-def test_options_reach_the_filter():
-    q = clip()
-    options = {"search_radius": 4, "patch_radius": 2, "bandwidth": 0.1, "chart": "local"}
-    np.testing.assert_array_equal(qf.denoise(q, **options), qf.nonlocal_pose_means(q, **options))
-
-
-def test_options_reach_the_bilateral_filter():
-    q = clip()
-    options = {"radius": 2, "sigma_angle": 0.1, "kernel": "classic", "iterations": 3}
-    np.testing.assert_array_equal(qf.denoise(q, method="bilateral", **options), qf.bilateral(q, **options))
-    message = refused(TypeError, qf.denoise, q, method="bilateral", bandwidth=3)
-    assert message.startswith("bandwidth: expected an option of bilateral (radius, sigma_time, ")
-
-
-@pytest.mark.parametrize("switch", [True, False])
-def test_the_bilateral_filter_of_a_motion(switch):
-    q = clip()
-    path = clips.path(np.random.default_rng(1), FRAMES)
-    motion = qf.Motion(q, path, fps=120.0, skeleton=skeleton(3))
-    result = qf.denoise(motion, method="bilateral", translation=switch)
-    np.testing.assert_array_equal(result.rotations, qf.bilateral(q))
-    jerk = [np.abs(np.diff(x, n=3, axis=0)).mean() for x in (path, result.translation)]
-    assert jerk[1] < jerk[0] / 2 if switch else jerk[1] == jerk[0]
-
-
-def skeleton(joints):
-    return qf.Skeleton([f"joint{i}" for i in range(joints)], range(-1, joints - 1), np.ones((joints, 3)))
-
-
-def test_a_motion_comes_back_as_a_motion():
-    q = clip()
-    path = clips.path(np.random.default_rng(2), FRAMES)
-    motion = qf.Motion(q, path, fps=120, skeleton=skeleton(3))
-    before = motion.rotations.tobytes(), motion.translation.tobytes()
-    result = qf.denoise(motion)
-    np.testing.assert_array_equal(result.rotations, qf.denoise(q))
-    assert result.fps == 120
-    assert result.skeleton is motion.skeleton
-    assert np.abs(result.translation - path).max() > 0
-    np.testing.assert_array_equal(qf.denoise(motion, translation=False).translation, path)
-    assert (motion.rotations.tobytes(), motion.translation.tobytes()) == before
-
-
-def test_a_motion_knows_its_frame_rate():
-    q = with_gap(clip(), "NaN")
-    motion = qf.Motion(q, fps=120, skeleton=skeleton(3))
-    assert np.isfinite(qf.denoise(motion, max_gap=4 / 120).rotations).all()
-    assert np.isnan(qf.denoise(motion, max_gap=3 / 120).rotations[40:44, 1]).all()
-    assert np.isnan(qf.denoise(motion, max_gap=4 / 120, fps=60).rotations[40:44, 1]).all()
-
-
-@pytest.mark.parametrize("gaps", ["fill", "keep"])
-def test_gaps_in_the_translation(gaps):
-    path = np.linspace([0.0, 0, 0], [9, 0, -9], FRAMES)
-    path[50:53] = np.nan
-    motion = qf.Motion(clip(), path, fps=1, skeleton=skeleton(3))
-    result = qf.denoise(motion, gaps=gaps, bandwidth=0.05).translation
-    np.testing.assert_array_equal(np.isnan(result).any(axis=1), np.isnan(path[:, 0]) & (gaps == "keep"))
-
-
-def test_the_whole_clip_leaves_the_translation_alone():
-    rng = np.random.default_rng(3)
-    arm = qf.Skeleton(["shoulder", "elbow"], [-1, 0], [[0.0, 0, 0], [0, -30, 0]])
-    rotations = qf.exp(0.1 * rng.standard_normal((60, 2, 3)))
-    motion = qf.Motion(rotations, rng.standard_normal((60, 3)), fps=30, skeleton=arm)
-    local = qf.denoise(motion, bandwidth=1.0)
-    anywhere = qf.denoise(motion, bandwidth=1.0, search_radius=None)
-    assert not np.allclose(local.translation, motion.translation)
-    np.testing.assert_array_equal(anywhere.translation, motion.translation)
-    assert not np.allclose(anywhere.rotations, motion.rotations)

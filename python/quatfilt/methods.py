@@ -1,0 +1,64 @@
+"""What `denoise` can run: one entry for each filter."""
+
+import functools
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Final
+
+from quatfilt._typing import Array
+from quatfilt.filters import bilateral, nonlocal_pose_means, orientation_filter
+
+AUTO: Final = "auto"
+"""Stands for the best chain that this version has, or for that of a preset."""
+
+REQUIRED: Final = inspect.Parameter.empty
+"""The default of an option that has none."""
+
+
+@dataclass(frozen=True)
+class Method:
+    """A filter as a step of `denoise`.
+
+    Parameters
+    ----------
+    filter : callable
+        The public function, from rotations to rotations. Its signature says which options there are.
+    with_translation : callable
+        The same for rotations and the translation of the root, or None; takes every option by name.
+    angles : tuple of str
+        Options in radians of rotation, which the command line takes in degrees.
+    hidden : tuple of str
+        Options that make something else than rotations.
+    """
+
+    filter: Callable[..., Any]
+    with_translation: Callable[..., tuple[Array, Array | None]]
+    angles: tuple[str, ...] = ()
+    hidden: tuple[str, ...] = ()
+
+    @functools.cached_property
+    def defaults(self) -> Mapping[str, Any]:
+        """All that `with_translation` takes by name, with the default of the filter or `REQUIRED`."""
+        _, *parameters = inspect.signature(self.filter).parameters.values()
+        return {parameter.name: parameter.default for parameter in parameters}
+
+    @functools.cached_property
+    def options(self) -> tuple[str, ...]:
+        """What can be chosen."""
+        return tuple(name for name in self.defaults if name not in self.hidden)
+
+
+FILTERS: Final[dict[str, Method]] = {
+    "bilateral": Method(bilateral.bilateral, bilateral.with_translation, angles=("sigma_angle",)),
+    "nonlocal_pose_means": Method(
+        nonlocal_pose_means.nonlocal_pose_means, nonlocal_pose_means.with_translation, angles=("bandwidth",)
+    ),
+    "orientation_filter": Method(orientation_filter.orientation_filter, orientation_filter.with_translation),
+}
+"""The filters by name."""
+
+METHODS: Final = (AUTO, *FILTERS)
+"""What `method=` may be, or be a list of."""
+
+__all__ = ["AUTO", "FILTERS", "METHODS", "REQUIRED", "Method"]
