@@ -19,6 +19,7 @@ from quatfilt.filters.stream.nonlocal_pose_means import NonlocalPoseMeansStream
 from quatfilt.formats.files import read_motion, write_motion
 from quatfilt.motion import metrics
 from quatfilt.motion.motion import Motion
+from quatfilt.motion.report import Report, report
 from quatfilt.motion.skeleton import EndSite, Skeleton
 from quatfilt.noise.noise import add_gaussian_noise, add_impulse_noise, noise_level
 from quatfilt.rotations.continuity import continuous
@@ -41,6 +42,7 @@ __all__ = [
     "Motion",
     "NonlocalPoseMeansStream",
     "QuatfiltError",
+    "Report",
     "Skeleton",
     "add_gaussian_noise",
     "add_impulse_noise",
@@ -62,6 +64,7 @@ __all__ = [
     "normalize",
     "orientation_filter",
     "read_motion",
+    "report",
     "resample",
     "set_num_threads",
     "simd_level",

@@ -128,11 +128,16 @@ def foot_slide(
     return float(_samples.mean(slide)) if how == "clip" else slide
 
 
+def foot_joints(names: Sequence[str]) -> list[str]:
+    """Return the names that speak of feet, ankles or toes."""
+    return [name for name in names if _FOOT.search(name)]
+
+
 def _paths(motion: "Motion", feet: Sequence[str] | None, up: Up) -> tuple[Values, int]:
     """Return the paths of the foot joints in centimetres, ``(frames, feet, 3)``, and the axis that points up."""
     names = list(motion.skeleton.names)
     if feet is None:
-        joints = [joint for joint, name in enumerate(names) if _FOOT.search(name)]
+        joints = [names.index(name) for name in foot_joints(names)]
         if not joints:
             raise ValueError("feet: expected names of foot joints, for no joint's name speaks of feet")
     else:
@@ -167,4 +172,4 @@ def _contacts(paths: Values, vertical: int, fps: float) -> Mask:
     return result
 
 
-__all__ = ["foot_contacts", "foot_slide"]
+__all__ = ["foot_contacts", "foot_joints", "foot_slide"]

@@ -1,0 +1,208 @@
+"""The numbers of a report."""
+
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quatfilt._typing import Mask
+from quatfilt.motion import metrics
+from quatfilt.motion.defects import find_defects
+from quatfilt.motion.metrics import _samples
+from quatfilt.motion.metrics._samples import Values
+from quatfilt.motion.metrics.feet import foot_joints
+from quatfilt.motion.report.sides import Side
+from quatfilt.noise.noise import noise_level
+
+
+@dataclass(frozen=True)
+class Joint:
+    """What a filter did to a joint, or to all of them.
+
+    Parameters
+    ----------
+    name : str
+        Name of the joint.
+    change_mean, change_p95, change_max : float, degrees
+        By how much samples were turned: mean, 95th percentile, largest.
+    noise_before, noise_after : float, degrees
+        Estimated deviation per component of the rotation vector; of all joints the root mean square.
+    jerk_before, jerk_after : float, degrees per second cubed
+        Mean length of the rotational jerk.
+    peak_kept : float
+        95th percentile of the angular speed, after divided by before.
+    missing, filled : int
+        Samples that were missing, and those of them that no longer are.
+    spikes, spikes_replaced : int
+        Samples that left both of their neighbours, and those of them that no longer do.
+    error_before, error_after : float, degrees
+        Mean angle to the reference; NaN without one.
+    error_p95_before, error_p95_after : float, degrees
+        Its 95th percentile.
+    psnr_before, psnr_after : float, decibels
+        Peak signal-to-noise ratio against the reference.
+    jerk_reference : float, degrees per second cubed
+        Jerk of the reference.
+    peak_before, peak_after : float
+        95th percentile of the angular speed, divided by the reference's.
+    """
+
+    name: str
+    change_mean: float
+    change_p95: float
+    change_max: float
+    noise_before: float
+    noise_after: float
+    jerk_before: float
+    jerk_after: float
+    peak_kept: float
+    missing: int
+    filled: int
+    spikes: int
+    spikes_replaced: int
+    error_before: float = float("nan")
+    error_after: float = float("nan")
+    error_p95_before: float = float("nan")
+    error_p95_after: float = float("nan")
+    psnr_before: float = float("nan")
+    psnr_after: float = float("nan")
+    jerk_reference: float = float("nan")
+    peak_before: float = float("nan")
+    peak_after: float = float("nan")
+
+
+@dataclass(frozen=True)
+class Foot:
+    """How far a foot slides on the ground.
+
+    Parameters
+    ----------
+    name : str
+        Name of the joint.
+    slide_before, slide_after : float, centimetres
+        Horizontal path while the reference's foot touches the ground, or that of the filtered motion.
+    slide_reference : float, centimetres
+        The reference's own; NaN without one.
+    """
+
+    name: str
+    slide_before: float
+    slide_after: float
+    slide_reference: float = float("nan")
+
+
+Column: TypeAlias = tuple[NDArray[np.generic], Any]
+"""A value for each joint, and one for all of them."""
+
+
+def joints(before: Side, after: Side, reference: Side | None = None) -> tuple[tuple[Joint, ...], Joint]:
+    """Measure each joint, and all together."""
+    columns = _of_a_filter(before, after)
+    if reference is not None:
+        columns |= _against(reference, before, after)
+    each = tuple(
+        Joint(name, **{column: values[joint].item() for column, (values, _) in columns.items()})
+        for joint, name in enumerate(before.names)
+    )
+    return each, Joint("all joints", **{column: overall for column, (_, overall) in columns.items()})
+
+
+def _of_a_filter(before: Side, after: Side) -> dict[str, Column]:
+    a, b = before.rotations, after.rotations
+    change = np.asarray(metrics.angle_error(a, b, per="sample"))
+    rate = {} if before.fps is None else {"fps": before.fps}
+    found, left = find_defects(a, **rate), find_defects(b, **rate)
+    return {
+        "change_mean": (_samples.mean(change, axis=0), float(_samples.mean(change))),
+        "change_p95": _percentile(change),
+        "change_max": _largest(change),
+        "noise_before": _noise(a),
+        "noise_after": _noise(b),
+        "jerk_before": _jerk(before),
+        "jerk_after": _jerk(after),
+        "peak_kept": _peak(a, b),
+        "missing": _count(_missing(a)),
+        "filled": _count(_missing(a) & ~_missing(b)),
+        "spikes": _count(found.spikes),
+        "spikes_replaced": _count(found.spikes & ~left.spikes),
+    }
+
+
+def _against(reference: Side, before: Side, after: Side) -> dict[str, Column]:
+    truth = reference.rotations
+    columns = {"jerk_reference": _jerk(reference)}
+    for when, side in (("before", before), ("after", after)):
+        error = np.asarray(metrics.angle_error(truth, side.rotations, per="sample"))
+        columns |= {
+            f"error_{when}": (_samples.mean(error, axis=0), float(_samples.mean(error))),
+            f"error_p95_{when}": _percentile(error),
+            f"psnr_{when}": (
+                np.asarray(metrics.psnr(truth, side.rotations, per="joint")),
+                float(metrics.psnr(truth, side.rotations)),
+            ),
+            f"peak_{when}": _peak(truth, side.rotations),
+        }
+    return columns
+
+
+def _percentile(values: Values) -> Column:
+    present = values[~np.isnan(values)]
+    overall = float(np.percentile(present, 95)) if len(present) else float("nan")
+    return _samples.percentile(values, 95), overall
+
+
+def _largest(values: Values) -> Column:
+    known = np.where(np.isnan(values), -np.inf, values)
+    largest = np.max(known, axis=0, initial=-np.inf)
+    largest = np.where(np.isinf(largest), np.nan, largest)
+    present = largest[~np.isnan(largest)]
+    return largest, float(present.max()) if len(present) else float("nan")
+
+
+def _noise(q: Values) -> Column:
+    noise = np.degrees(noise_level(q).astype(np.float64))
+    return noise, float(np.sqrt(np.mean(noise**2))) if len(noise) else float("nan")
+
+
+def _jerk(side: Side) -> Column:
+    rate = 1.0 if side.fps is None else side.fps
+    return (
+        np.asarray(metrics.jerk(side.rotations, fps=rate, per="joint")),
+        float(metrics.jerk(side.rotations, fps=rate)),
+    )
+
+
+def _peak(reference: Values, other: Values) -> Column:
+    each = np.asarray(metrics.peak_velocity_kept(reference, other, per="joint"))
+    return each, float(_samples.mean(each))
+
+
+def _count(samples: Mask) -> Column:
+    return np.sum(samples, axis=0), int(np.sum(samples))
+
+
+def _missing(q: Values) -> Mask:
+    return np.asarray(np.isnan(q).any(axis=-1))
+
+
+def feet(before: Side, after: Side, reference: Side | None = None) -> tuple[Foot, ...]:
+    """Measure how far the feet slide."""
+    if before.motion is None or after.motion is None:
+        return ()
+    ground = after.motion if reference is None or reference.motion is None else reference.motion
+    names = foot_joints(before.names)
+    if not names:
+        return ()
+    slides = [
+        np.asarray(metrics.foot_slide(motion, reference=ground, feet=names, per="joint"), np.float64)
+        for motion in (before.motion, after.motion, ground)
+    ]
+    own = slides[2] if reference is not None else np.full(len(names), np.nan)
+    return tuple(
+        Foot(name, *map(float, values))
+        for name, *values in zip(names, slides[0], slides[1], own, strict=True)
+    )
+
+
+__all__ = ["Foot", "Joint", "feet", "joints"]

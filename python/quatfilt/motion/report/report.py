@@ -1,0 +1,198 @@
+"""A motion before and after a filter, joint by joint."""
+
+import json
+import os
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from quatfilt.evaluation._plot import figure
+from quatfilt.formats.files import write_bytes
+from quatfilt.motion.motion import Motion
+from quatfilt.motion.report import measured, picture, text
+from quatfilt.motion.report.measured import Foot, Joint
+from quatfilt.motion.report.sides import Side, sides
+
+_PICTURES = (".png", ".pdf", ".svg")
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Report:
+    """What a filter did. `report` makes one; printed, it is a text.
+
+    Parameters
+    ----------
+    frames : int
+        Length of the clip.
+    fps : float, hertz
+        Frame rate; 1 where none is known, and jerk is then in degrees per frame cubed.
+    overall : Joint
+        All joints together.
+    joints : tuple of Joint
+        Each joint, in the order of the skeleton.
+    feet : tuple of Foot
+        How far the feet slide on the ground; none without a skeleton that has feet.
+    clips : tuple of Side
+        What was compared, for the curves of the picture.
+
+    Examples
+    --------
+    >>> import quatfilt as qf
+    >>> from quatfilt.evaluation.synthetic import walk
+    >>> truth = walk(seconds=2)
+    >>> noisy = truth.replace(rotations=qf.add_gaussian_noise(truth.rotations, sigma=0.02, rng=0))
+    >>> result = qf.report(noisy, qf.denoise(noisy), reference=truth)
+    >>> isinstance(result, qf.Report)
+    True
+    >>> result.overall.error_after < 0.6 * result.overall.error_before
+    True
+    """
+
+    frames: int
+    fps: float
+    overall: Joint
+    joints: tuple[Joint, ...]
+    feet: tuple[Foot, ...]
+    clips: tuple[Side, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"Report({self.frames} frames of {len(self.joints)} joints, changed by {self.overall.change_mean:.2g}°)"
+
+    def __str__(self) -> str:
+        return text.plain(self)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return all numbers by name, as JSON has them: what cannot be measured is None.
+
+        Returns
+        -------
+        dict
+            ``frames``, ``fps``, ``overall``, ``joints`` and ``feet``.
+        """
+        return {
+            "frames": self.frames,
+            "fps": self.fps,
+            "overall": _finite(asdict(self.overall)),
+            "joints": [_finite(asdict(joint)) for joint in self.joints],
+            "feet": [_finite(asdict(foot)) for foot in self.feet],
+        }
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Write the report into a file.
+
+        Parameters
+        ----------
+        path : str or path
+            ``.png``, ``.pdf`` or ``.svg``: a picture with the curves of the joints that changed most, the jerk of all joints
+            and the slide of the feet. ``.json``: what `as_dict` returns. ``.txt``: the text.
+
+        Raises
+        ------
+        ValueError
+            For another extension.
+        ImportError
+            For a picture, without matplotlib.
+        FileAccessError
+            If the file cannot be written.
+        """
+        name = os.fspath(path)
+        extension = check_path(name)
+        if extension in _PICTURES:
+            content = picture.draw(self, self.clips, extension.removeprefix("."))
+        elif extension == ".json":
+            content = (json.dumps(self.as_dict(), indent=2, ensure_ascii=False) + "\n").encode()
+        else:
+            content = (str(self) + "\n").encode()
+        write_bytes(name, lambda: content)
+
+
+def report(
+    before: Motion | ArrayLike,
+    after: Motion | ArrayLike,
+    *,
+    reference: Motion | ArrayLike | None = None,
+    fps: float | None = None,
+    scalar_first: bool = True,
+) -> Report:
+    """Tell what a filter did to a motion, joint by joint.
+
+    By how much it turned the samples, how much noise, jerk and sliding of the feet it took away, how much of the fast
+    motion it kept, and which missing samples and spikes it replaced. A reference tells how far both are from the truth.
+
+    Parameters
+    ----------
+    before, after : Motion or array_like, shape (frames, joints, 4) or (frames, 4)
+        The same clip without and with the filter.
+    reference : like `before`, or None, default None
+        What is true.
+    fps : float or None, hertz, default None
+        Frame rate; None for the motion's own. Arrays without one are judged by frames: jerk is in degrees per frame cubed,
+        and spikes are those of 120 frames per second.
+    scalar_first : bool, default True
+        Whether quaternions of arrays are ``(w, x, y, z)``; False for SciPy's ``(x, y, z, w)``.
+
+    Returns
+    -------
+    Report
+        Prints as a text; ``write("report.png")`` draws it, `as_dict` is for programs.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If the clips differ in kind, joints, frames or frame rate; the message says how.
+
+    See Also
+    --------
+    denoise, metrics
+
+    Notes
+    -----
+    Noise is what `noise_level` estimates, per component of the rotation vector; jerk is `metrics.jerk`, and the peak kept is
+    `metrics.peak_velocity_kept` of `after` against `before`: noise has fast turns of its own, so that 1 is not to be
+    expected where there was much. Feet slide while those of the reference touch the ground; without one, those of `after`.
+
+    Examples
+    --------
+    >>> import quatfilt as qf
+    >>> from quatfilt.evaluation.synthetic import walk
+    >>> truth = walk(seconds=2)
+    >>> noisy = truth.replace(rotations=qf.add_gaussian_noise(truth.rotations, sigma=0.02, rng=0))
+    >>> result = qf.report(noisy, qf.denoise(noisy))
+    >>> result.overall.jerk_after < 0.1 * result.overall.jerk_before
+    True
+    """
+    clips = sides(before, after, reference, fps=fps, scalar_first=scalar_first)
+    rate = clips[0].fps
+    joints, overall = measured.joints(*clips)
+    return Report(
+        frames=len(clips[0].rotations),
+        fps=1.0 if rate is None else rate,
+        overall=overall,
+        joints=joints,
+        feet=measured.feet(*clips),
+        clips=clips,
+    )
+
+
+def check_path(path: str | os.PathLike[str]) -> str:
+    """Return the extension of a path that a report can be written to."""
+    extension = Path(path).suffix.lower()
+    if extension in _PICTURES:
+        figure(1, 1)  # refuses without matplotlib
+    elif extension not in (".json", ".txt"):
+        expected = ", ".join([*_PICTURES, ".json"])
+        raise ValueError(f"path: expected {expected} or .txt, got {extension or 'no extension'}")
+    return extension
+
+
+def _finite(values: dict[str, Any]) -> dict[str, Any]:
+    return {
+        name: None if isinstance(value, float) and not np.isfinite(value) else value
+        for name, value in values.items()
+    }
+
+
+__all__ = ["Foot", "Joint", "Report", "check_path", "report"]
