@@ -13,6 +13,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from quatfilt.motion.report import Report, text
+
 
 def refuse_to_wrap(*streams: TextIO) -> None:
     """Let streams that cannot say ``°`` say ``?`` instead of failing."""
@@ -61,6 +63,16 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, title:
     # A pipe has no width: nothing is to be cut off there.
     width = None if sys.stdout.isatty() else 10_000
     Console(file=sys.stdout, highlight=False, width=width).print(table, soft_wrap=width is not None)
+
+
+def print_report(report: Report) -> None:
+    """Print what a filter did."""
+    say("")
+    say(text.summary(report))
+    for table in text.tables(report):
+        say("")
+        print_table(table.columns, table.rows, title=table.title)
+    say("")
 
 
 def number(value: float | None, digits: int = 2) -> str:

@@ -1,25 +1,16 @@
 """``quatfilt denoise``: a noisy file in, a clean one out."""
 
-import math
-import time
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
-import numpy as np
 import typer
 
-from quatfilt import _validation
-from quatfilt.cli import _options, _output
-from quatfilt.denoise import METHODS
-from quatfilt.denoise import denoise as clean
-from quatfilt.errors import FileAccessError
-from quatfilt.formats.files import write_motion
-from quatfilt.motion.defects import find_defects
-from quatfilt.motion.metrics import angle_error
+from quatfilt.cli import _cleaning, _options, _output, _steps
+from quatfilt.cli.compare import in_one_unit, refuse_others
 from quatfilt.motion.motion import Motion
-from quatfilt.noise.noise import noise_level
+from quatfilt.motion.report import Report, check_path, report
 
-_METHODS = "|".join(METHODS).replace("_", "-")
+_TERMINAL = Path("-")
 
 
 def denoise(
@@ -35,7 +26,9 @@ def denoise(
             show_default=False,
         ),
     ] = None,
-    method: Annotated[str, typer.Option(metavar=_METHODS, help="The filter.")] = "auto",
+    method: _steps.Method = None,
+    preset: _steps.PresetName = None,
+    option: _steps.Options = None,
     search_radius: Annotated[
         str | None,
         typer.Option(metavar="FRAMES|all", help="How far similar poses are looked for. [default: 10]"),
@@ -66,15 +59,28 @@ def denoise(
     neighbors: Annotated[
         int | None, typer.Option(metavar="N", help="Only the N most similar poses count. [default: all]")
     ] = None,
-    gaps: Annotated[
-        str | None, typer.Option(metavar="fill|keep|raise", help="What becomes of missing samples.")
+    gaps: _steps.Gaps = None,
+    max_gap: _steps.MaxGap = None,
+    confidence: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="How far samples count, 0 to 1, per frame or frame and joint: .npy, .csv, .txt.",
+        ),
     ] = None,
-    max_gap: Annotated[
-        float | None, typer.Option(metavar="SECONDS", help="The longest gap to fill. [default: any]")
+    translation: _steps.Translation = True,
+    reports: Annotated[
+        list[Path] | None,
+        typer.Option(
+            "--report",
+            metavar="FILE|-",
+            help="What the filter did, as .png, .pdf, .svg, .json, .txt, or - for the terminal. May be given several times.",
+            show_default=False,
+        ),
     ] = None,
-    translation: Annotated[
-        bool, typer.Option("--translation/--no-translation", help="Clean the path of the root too.")
-    ] = True,
+    reference: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="The true motion, for the report.")
+    ] = None,
     fps: _options.Fps = None,
     skeleton: _options.SkeletonFile = None,
     first_frame: _options.FirstFrameChoice = "auto",
@@ -83,100 +89,108 @@ def denoise(
 ) -> None:
     """Clean a motion file.
 
-    Each pose becomes the mean of the poses around it in time, weighted by how alike their neighbourhoods look.
+    By default each pose becomes the mean of the poses around it in time, weighted by how alike their neighbourhoods
+    look. --method and --preset run other filters, or several.
     """
     _options.use_threads(threads)
-    options: dict[str, Any] = {
-        "search_radius": None if search_radius is None else _search_radius(search_radius),
-        "patch_radius": patch_radius,
-        "bandwidth": None if bandwidth is None else _bandwidth(bandwidth),
-        "chart": chart,
-        "boundary": boundary,
-        "weights": weights,
-        "distance": distance,
-        "neighbors": neighbors,
-        "gaps": gaps,
-        "max_gap": max_gap,
-    }
-    options = {name: value for name, value in options.items() if value is not None}
-    if options.get("search_radius") == "all":
-        options["search_radius"] = None
-    target = output or _beside(path)
-    if target.exists() and path.exists() and target.samefile(path):
-        raise FileAccessError(target, "this is the input: write to another file")
-    with _output.busy(f"reading {path.name}"):
-        motion = _options.read(path, fps=fps, skeleton=skeleton, first_frame=first_frame)
-    started = time.perf_counter()
-    with _output.busy(f"cleaning {path.name}"):
-        result = clean(motion, method=method.replace("-", "_"), translation=translation, **options)
-    seconds = time.perf_counter() - started
-    with _output.busy(f"writing {target.name}"):
-        write_motion(target, result)
-    report = _report(path, target, motion, result, seconds)
-    if json:
-        _output.print_json(report)
-        return
-    for note in motion.notes:
-        _output.say(f"{path}: {note}")
-    if report["missing_samples"]:
-        _output.say(
-            f"{path}: {_output.counted(report['missing_samples'], 'missing sample')}, "
-            f"{report['missing_samples_left']} left missing"
-        )
-    _output.say(
-        f"{path}: {_output.counted(len(motion), 'frame')} of {_output.counted(len(motion.skeleton), 'joint')}, "
-        f"estimated noise {report['noise_degrees']:.2g}°, turned by {report['change_degrees']:.2g}° on average, "
-        f"{seconds:.2g} s"
+    wish = _steps.asked(
+        method,
+        preset,
+        option,
+        {
+            "search_radius": None if search_radius is None else _search_radius(search_radius),
+            "patch_radius": patch_radius,
+            "bandwidth": bandwidth,
+            "chart": chart,
+            "boundary": boundary,
+            "weights": weights,
+            "distance": distance,
+            "neighbors": neighbors,
+            "gaps": gaps,
+            "max_gap": max_gap,
+        },
     )
-    _output.say(f"{target}: written")
+    _steps.planned(wish)
+    wanted = _wanted(reports or [], json=json)
+    how = _cleaning.How(wish, translation, fps, skeleton, first_frame, confidence)
+    target = output or beside(path)
+    with _output.busy(f"reading {path.name}"):
+        motion = _cleaning.read(path, target, how)
+        truth = None if reference is None else _reference(reference, path, motion, how)
+    cleaned = _cleaning.clean(path, target, motion, how, busy=_output.busy)
+    told = None
+    if wanted or json:
+        with _output.busy("measuring"):
+            told = _report(cleaned, truth)
+        for file in wanted:
+            if file != _TERMINAL:
+                told.write(file)
+    if json:
+        _output.print_json({**cleaned.record, **({} if told is None else {"report": told.as_dict()})})
+        return
+    _say(path, target, cleaned)
+    if told is not None and _TERMINAL in wanted:
+        _output.print_report(told)
+    for file in wanted:
+        if file != _TERMINAL:
+            _output.say(f"{file}: written")
 
 
-def _beside(path: Path) -> Path:
+def beside(path: Path) -> Path:
+    """Return where a cleaned file goes unless told."""
     extension = ".bvh" if path.suffix.lower() == ".amc" else path.suffix
     return path.with_name(f"{path.stem}.clean{extension}")
 
 
-def _search_radius(text: str) -> int | str:
-    if text == "all":
-        return text
+def _say(path: Path, target: Path, cleaned: _cleaning.Cleaned) -> None:
+    record, motion = cleaned.record, cleaned.motion
+    for note in motion.notes:
+        _output.say(f"{path}: {note}")
+    if record["missing_samples"]:
+        _output.say(
+            f"{path}: {_output.counted(record['missing_samples'], 'missing sample')}, "
+            f"{record['missing_samples_left']} left missing"
+        )
+    _output.say(
+        f"{path}: {_output.counted(len(motion), 'frame')} of {_output.counted(len(motion.skeleton), 'joint')}, "
+        f"estimated noise {record['noise_degrees']:.2g}°, turned by {record['change_degrees']:.2g}° on average, "
+        f"{record['seconds']:.2g} s"
+    )
+    _output.say(f"{target}: written")
+
+
+def _search_radius(text: str) -> str:
     try:
-        return int(text)
+        return text if text == "all" else str(int(text))
     except ValueError:
         raise ValueError(f"--search-radius: expected a number of frames or all, got {text!r}") from None
 
 
-def _bandwidth(text: str) -> float | str:
-    if text == "auto":
-        return text
-    try:
-        degrees = float(text)
-    except ValueError:
-        raise ValueError(f"--bandwidth: expected degrees above 0 or auto, got {text!r}") from None
-    return math.radians(_validation.number(degrees, "--bandwidth", above=0))
+def _wanted(reports: list[Path], *, json: bool) -> list[Path]:
+    """Return where the report goes, and refuse what cannot be written before anything is computed."""
+    for file in reports:
+        if file == _TERMINAL and json:
+            raise ValueError("--report: expected a file beside --json, got -")
+        if file != _TERMINAL:
+            try:
+                check_path(file)
+            except ValueError as error:
+                raise ValueError(f"--report: {str(error).removeprefix('path: ')}, or -") from None
+    return reports
 
 
-def _report(path: Path, target: Path, motion: Motion, result: Motion, seconds: float) -> dict[str, Any]:
-    noise, change = 0.0, 0.0
-    if motion.rotations.size:
-        noise = float(np.degrees(np.sqrt(np.mean(np.square(noise_level(motion.rotations))))))
-        change = float(angle_error(motion.rotations, result.rotations))
-    return {
-        "input": str(path),
-        "output": str(target),
-        "frames": len(motion),
-        "joints": len(motion.skeleton),
-        "fps": motion.fps,
-        "notes": list(motion.notes),
-        "missing_samples": _missing(motion),
-        "missing_samples_left": _missing(result),
-        "noise_degrees": noise,
-        "change_degrees": change,
-        "seconds": seconds,
-    }
+def _report(cleaned: _cleaning.Cleaned, truth: Motion | None) -> Report:
+    if truth is None:
+        return report(cleaned.motion, cleaned.result)
+    truth, before = in_one_unit(truth, cleaned.motion)
+    return report(before, cleaned.result.replace(skeleton=before.skeleton), reference=truth)
 
 
-def _missing(motion: Motion) -> int:
-    return int(find_defects(motion.rotations, fps=motion.fps).missing.sum())
+def _reference(path: Path, source: Path, motion: Motion, how: _cleaning.How) -> Motion:
+    """Read the true motion, and refuse that of other joints or frames."""
+    truth = _options.read(path, fps=how.fps, skeleton=how.skeleton, first_frame=how.first_frame)
+    refuse_others(path, truth, source, motion)
+    return truth
 
 
-__all__ = ["denoise"]
+__all__ = ["beside", "denoise"]

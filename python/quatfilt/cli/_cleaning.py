@@ -1,0 +1,118 @@
+"""From a noisy file to a clean one, and a record of what happened."""
+
+import contextlib
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from quatfilt.cli import _options, _steps
+from quatfilt.denoise import denoise
+from quatfilt.errors import FileAccessError
+from quatfilt.formats.files import write_motion
+from quatfilt.motion.defects import find_defects
+from quatfilt.motion.metrics import angle_error
+from quatfilt.motion.motion import Motion
+from quatfilt.noise.noise import noise_level
+
+Busy = Callable[[str], contextlib.AbstractContextManager[None]]
+"""Shows what is going on."""
+
+
+@dataclass(frozen=True)
+class How:
+    """What is done to each file."""
+
+    wish: Mapping[str, Any]
+    """Keywords for `denoise`."""
+    translation: bool = True
+    fps: float | None = None
+    skeleton: Path | None = None
+    first_frame: str = "auto"
+    confidence: Path | None = None
+
+
+@dataclass(frozen=True)
+class Cleaned:
+    """A file that was cleaned and written."""
+
+    motion: Motion
+    result: Motion
+    record: dict[str, Any]
+
+
+def silent(_: str) -> contextlib.AbstractContextManager[None]:
+    """Show nothing."""
+    return contextlib.nullcontext()
+
+
+def read(source: Path, target: Path, how: How) -> Motion:
+    """Read a file that is to be cleaned into another one."""
+    if target.exists() and source.exists() and target.samefile(source):
+        raise FileAccessError(target, "this is the input: write to another file")
+    return _options.read(source, fps=how.fps, skeleton=how.skeleton, first_frame=how.first_frame)
+
+
+def clean(source: Path, target: Path, motion: Motion, how: How, *, busy: Busy = silent) -> Cleaned:
+    """Clean the motion of a file, and write the result.
+
+    Parameters
+    ----------
+    source, target : Path
+        Where it was read, and where the result goes.
+    motion : Motion
+        What was read.
+    how : How
+        What is done.
+    busy : callable
+        Gets told what is going on.
+
+    Returns
+    -------
+    Cleaned
+        Both motions, and what there is to say about them.
+
+    Raises
+    ------
+    QuatfiltError, ValueError, TypeError
+        If a file or an option is not what it should be.
+    """
+    options = dict(how.wish)
+    if how.confidence is not None:
+        options["confidence"] = _steps.read_confidence(how.confidence, *motion.rotations.shape[:2])
+    started = time.perf_counter()
+    with busy(f"cleaning {source.name}"):
+        result = denoise(motion, translation=how.translation, **options)
+    seconds = time.perf_counter() - started
+    with busy(f"writing {target.name}"):
+        write_motion(target, result)
+    record = {
+        "input": str(source),
+        "output": str(target),
+        "steps": _steps.described(_steps.planned(how.wish)),
+    }
+    return Cleaned(motion, result, {**record, **_measured(motion, result), "seconds": seconds})
+
+
+def _measured(motion: Motion, result: Motion) -> dict[str, Any]:
+    noise, change = 0.0, 0.0
+    if motion.rotations.size:
+        noise = float(np.degrees(np.sqrt(np.mean(np.square(noise_level(motion.rotations))))))
+        change = float(angle_error(motion.rotations, result.rotations))
+    return {
+        "frames": len(motion),
+        "joints": len(motion.skeleton),
+        "fps": motion.fps,
+        "notes": list(motion.notes),
+        "missing_samples": _missing(motion),
+        "missing_samples_left": _missing(result),
+        "noise_degrees": noise,
+        "change_degrees": change,
+    }
+
+
+def _missing(motion: Motion) -> int:
+    return int(find_defects(motion.rotations, fps=motion.fps).missing.sum())

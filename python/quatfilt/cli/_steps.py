@@ -1,0 +1,174 @@
+"""From the words of the command line to what `denoise` is to run."""
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any, TypeAlias, cast
+
+import numpy as np
+import typer
+
+from quatfilt import _validation
+from quatfilt._typing import Array
+from quatfilt.chain import Step, names, plan
+from quatfilt.errors import FileAccessError
+from quatfilt.methods import FILTERS, METHODS
+from quatfilt.presets import PRESETS
+
+Method: TypeAlias = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--method",
+        metavar="NAME[,NAME…]",
+        help=f"Filters, in this order; may be given several times. [default: {METHODS[0]}]",
+        show_default=False,
+    ),
+]
+PresetName: TypeAlias = Annotated[
+    str | None, typer.Option("--preset", metavar="|".join(PRESETS), help="A chain for a kind of recording.")
+]
+Options: TypeAlias = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--option",
+        metavar="[METHOD.]NAME=VALUE",
+        help="Any option of a filter, as bilateral.radius=3; lists as 1,2,1; angles in degrees. May be given several times.",
+        show_default=False,
+    ),
+]
+Gaps: TypeAlias = Annotated[
+    str | None, typer.Option("--gaps", metavar="fill|keep|raise", help="What becomes of missing samples.")
+]
+MaxGap: TypeAlias = Annotated[
+    float | None,
+    typer.Option("--max-gap", metavar="SECONDS", help="The longest gap to fill. [default: any]"),
+]
+Translation: TypeAlias = Annotated[
+    bool, typer.Option("--translation/--no-translation", help="Clean the path of the root too.")
+]
+
+_WORDS: Mapping[str, Any] = {"none": None, "all": None, "true": True, "false": False}
+"""Words with a meaning of their own; "all" is that of a search without a radius."""
+
+
+def asked(
+    method: Sequence[str] | None, preset: str | None, option: Sequence[str] | None, flags: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Return the keywords for `denoise`.
+
+    Parameters
+    ----------
+    method, preset, option : as on the command line
+        Names of filters, perhaps with commas; a preset; ``[METHOD.]NAME=VALUE``.
+    flags : mapping
+        Values of options that have flags of their own; None for those that were not given. Texts are values of
+        ``--option``.
+
+    Returns
+    -------
+    dict
+        `method`, `preset` and options.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If something is not what was stated; the message names it.
+    """
+    chosen = [_name(word) for words in method or () for word in words.split(",")] or [METHODS[0]]
+    wish: dict[str, Any] = {"method": chosen if len(chosen) > 1 else chosen[0], "preset": preset}
+    running = names(wish["method"], preset)
+    plain: dict[str, Any] = {}
+    own: dict[str, dict[str, Any]] = {}
+    for name, given in flags.items():
+        if isinstance(given, str):
+            plain[name] = _value(given, "--" + name.replace("_", "-"), angle=_is_angle(name, running))
+        elif given is not None:
+            plain[name] = given
+    for words in option or ():
+        place, equals, text = words.partition("=")
+        step, dot, name = map(_name, place.rpartition("."))
+        if not equals or not name or bool(dot) != bool(step):
+            raise ValueError(f"--option: expected [METHOD.]NAME=VALUE, got {words!r}")
+        value = _value(text, f"--option {place.strip()}", angle=_is_angle(name, [step] if step else running))
+        if step:
+            own.setdefault(step, {})[name] = value
+        else:
+            plain[name] = value
+    for name in own:
+        if name in plain:
+            raise ValueError(
+                f"--option: expected {name}.{name}=VALUE beside other options of {name}, got {name}=VALUE"
+            )
+    return {**wish, **plain, **own}
+
+
+def planned(wish: Mapping[str, Any]) -> tuple[Step, ...]:
+    """Return the steps that `denoise` will run, and so refuse what it will refuse of names and options."""
+    options = dict(wish)
+    return plan(options.pop("method"), options.pop("preset"), options)
+
+
+def described(steps: Sequence[Step]) -> list[dict[str, Any]]:
+    """Return the steps as a record of what ran: names, and the values that were chosen."""
+    return [
+        {
+            "method": step.name,
+            **{name: value for name, value in step.chosen.items() if name != "confidence"},
+        }
+        for step in steps
+    ]
+
+
+def read_confidence(path: Path, frames: int, joints: int) -> Array:
+    """Return how far samples count, ``(frames,)`` or ``(frames, joints)``, from a ``.npy`` or a table of numbers."""
+    try:
+        if path.suffix.lower() == ".npy":
+            values = np.load(path, allow_pickle=False)
+        else:
+            values = np.loadtxt(path, delimiter="," if path.suffix.lower() == ".csv" else None, ndmin=1)
+    except OSError as error:
+        raise FileAccessError(str(path), error.strerror or str(error)) from None
+    except (ValueError, EOFError) as error:
+        raise ValueError(f"{path}: expected numbers, got {error}") from None
+    return cast("Array", _validation.confidence(values, frames, joints, np.dtype(np.float64)))
+
+
+def explained() -> str:
+    """Return the filters with their options, for the help."""
+    own = {name: ", ".join(Step(name, {}).own).replace("_", "-") for name in FILTERS}
+    lines = [f"  {name.replace('_', '-')}: {options}" for name, options in own.items()]
+    presets = [f"  {name}: {preset.about}" for name, preset in PRESETS.items()]
+    return "\b\nFilters and their options:\n" + "\n".join(lines) + "\n\n\b\nPresets:\n" + "\n".join(presets)
+
+
+def _name(text: str) -> str:
+    return text.strip().replace("-", "_")
+
+
+def _is_angle(option: str, running: Sequence[str]) -> bool:
+    return any(option in FILTERS[name].angles for name in running if name in FILTERS)
+
+
+def _value(text: str, name: str, *, angle: bool) -> Any:
+    """Return what a text means: a word, a number, a list of numbers, or itself; angles in radians."""
+    word = text.strip()
+    if word.lower() in _WORDS:
+        return _WORDS[word.lower()]
+    if "," in word:
+        values = [_number(part) for part in word.removesuffix(",").split(",")]
+        if any(isinstance(value, str) for value in values):
+            raise ValueError(f"{name}: expected numbers with commas between them, got {text!r}")
+    else:
+        values = [_number(word)]
+    if angle and not isinstance(values[0], str):
+        values = [math.radians(_validation.number(value, name, above=0, infinite=True)) for value in values]
+    return values if "," in word else values[0]
+
+
+def _number(text: str) -> int | float | str:
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text.strip()
