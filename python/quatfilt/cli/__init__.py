@@ -12,16 +12,15 @@ from typing import Annotated
 
 import typer
 
-from quatfilt.cli._output import one_line, refuse_to_wrap
+from quatfilt.cli import _steps
+from quatfilt.cli._errors import explained
+from quatfilt.cli._output import refuse_to_wrap
+from quatfilt.cli.batch import batch
 from quatfilt.cli.compare import compare
 from quatfilt.cli.demo import demo
 from quatfilt.cli.denoise import denoise
 from quatfilt.cli.evaluate import evaluate
 from quatfilt.cli.info import info
-from quatfilt.errors import QuatfiltError
-
-BAD_INPUT = (QuatfiltError, ValueError, TypeError, OSError, ImportError)
-"""What a user can do something about."""
 
 app = typer.Typer(
     name="quatfilt",
@@ -31,7 +30,8 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-app.command()(denoise)
+app.command(epilog=_steps.explained())(denoise)
+app.command(epilog=_steps.explained())(batch)
 app.command()(info)
 app.command()(compare)
 app.command()(demo)
@@ -93,28 +93,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except Exception as error:
         if debug:
             raise
-        status = _report(error)
+        message, status = explained(error)
+        sys.stderr.write(f"quatfilt: {message}\n")
     if status == 130:
         sys.stderr.write("quatfilt: interrupted\n")
     return status if isinstance(status, int) else 0
-
-
-def _report(error: Exception) -> int:
-    """Say in one line what went wrong, and return the exit status."""
-    message = getattr(error, "format_message", None)
-    if message is not None:  # a usage error of the command line's library
-        sys.stderr.write(f"quatfilt: {one_line(message())} (see quatfilt --help)\n")
-        return 2
-    if isinstance(error, MemoryError):
-        sys.stderr.write(f"quatfilt: not enough memory{one_line(f': {error}') if str(error) else ''}\n")
-        return 2
-    if isinstance(error, BAD_INPUT):
-        sys.stderr.write(f"quatfilt: {one_line(str(error) or type(error).__name__)}\n")
-        return 2
-    sys.stderr.write(
-        f"quatfilt: internal error: {one_line(repr(error))}; --debug shows where it comes from\n"
-    )
-    return 1
 
 
 __all__ = ["app", "main"]
