@@ -128,6 +128,40 @@ def test_a_folder_of_files(tmp_path):
         np.testing.assert_array_equal(clean.skeleton.offsets, noisy.skeleton.offsets)
 
 
+REPORTED = """
+    import json
+    from pathlib import Path
+
+    import quatfilt as qf
+
+    for path in sorted(Path("takes").glob("*.bvh")):
+        take = qf.read_motion(path)
+        clean = qf.denoise(
+            take, method=["bilateral", "nonlocal_pose_means"], bilateral={"radius": 1}, max_gap=0.5
+        )
+        told = qf.report(take, clean)
+        told.write(path.with_suffix(".png"))
+        told.write(path.with_suffix(".json"))
+        overall = json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))["overall"]
+        print(path.name, overall["noise_after"] < 0.5 * overall["noise_before"], overall["filled"])
+"""
+
+
+def test_a_chain_and_its_report_for_each_file_of_a_folder(tmp_path):
+    takes = tmp_path / "takes"
+    takes.mkdir()
+    arm = qf.Skeleton(["hips", "arm", "foot"], [-1, 0, 1], [[0, 90, 0], [0, -40, 0], [0, -30, 0]])
+    for seed in range(2):
+        _, noisy = truth_and_noise(seed=seed)
+        path = clips.path(np.random.default_rng(seed), len(noisy))
+        qf.write_motion(takes / f"take{seed}.bvh", qf.Motion(noisy, path, fps=FPS, skeleton=arm))
+    text = (takes / "take0.bvh").read_text(encoding="utf-8").splitlines()
+    text[-20:-10] = [" ".join(["nan"] * len(line.split())) for line in text[-20:-10]]
+    (takes / "take0.bvh").write_text("\n".join(text), encoding="utf-8")
+    assert run(tmp_path, REPORTED) == "take0.bvh True 30\ntake1.bvh True 0\n"
+    assert {path.suffix for path in takes.iterdir()} == {".bvh", ".png", ".json"}
+
+
 def test_a_folder_of_real_files(tmp_path, data_dir):
     takes = tmp_path / "takes"
     takes.mkdir()

@@ -106,37 +106,24 @@ def _whole(report: "Report") -> Table:
 
 
 def _joints(report: "Report") -> Table:
-    known = has_reference(report)
-    columns: tuple[str, ...] = (
-        "joint",
-        "mean °",
-        "95 % °",
-        "max °",
-        "noise °",
-        "→",
-        "jerk left",
-        "peak kept",
-    )
-    if known:
-        columns += ("error °", "→ ")
-    columns += ("filled", "spikes")
-    rows = []
-    for joint in (report.joints[index] for index in changed_most(report, SHOWN)):
-        row: tuple[str, ...] = (
-            joint.name,
-            _number(joint.change_mean),
-            _number(joint.change_p95),
-            _number(joint.change_max, 1),
-            _number(joint.noise_before, 3),
-            _number(joint.noise_after, 3),
-            _percent(joint.jerk_after, joint.jerk_before),
-            _number(joint.peak_kept),
-        )
-        if known:
-            row += (_number(joint.error_before), _number(joint.error_after))
-        rows.append((*row, str(joint.filled), str(joint.spikes_replaced)))
+    shown = [report.joints[index] for index in changed_most(report, SHOWN)]
+    columns: dict[str, list[str]] = {
+        "joint": [joint.name for joint in shown],
+        "mean °": [_number(joint.change_mean) for joint in shown],
+        "max °": [_number(joint.change_max, 1) for joint in shown],
+        "noise °": [_pair(joint.noise_before, joint.noise_after) for joint in shown],
+        "jerk": [_percent(joint.jerk_after, joint.jerk_before) for joint in shown],
+        "peak": [_number(joint.peak_kept) for joint in shown],
+    }
+    if has_reference(report):
+        columns["error °"] = [_pair(joint.error_before, joint.error_after) for joint in shown]
+    # What no joint had needs no column: a terminal is narrow.
+    if report.overall.missing:
+        columns["filled"] = [str(joint.filled) for joint in shown]
+    if report.overall.spikes:
+        columns["spikes"] = [str(joint.spikes_replaced) for joint in shown]
     title = "Joints that changed most" if len(report.joints) > SHOWN else "Joints"
-    return Table(title, columns, tuple(rows))
+    return Table(title, tuple(columns), tuple(zip(*columns.values(), strict=True)))
 
 
 def _feet(report: "Report") -> Table:
@@ -171,6 +158,10 @@ def _plain_table(table: Table) -> str:
         for line in lines
     ]
     return "\n".join([table.title, *text] if table.title else text)
+
+
+def _pair(before: float, after: float) -> str:
+    return f"{_number(before)}→{_number(after)}"
 
 
 def _percent(part: float, whole: float) -> str:
