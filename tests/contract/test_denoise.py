@@ -1,16 +1,17 @@
 """How `denoise` is told what to run, and in which words it refuses."""
 
+import inspect
+
 import chains
 import clips
 import numpy as np
 import pytest
 import quatfilt as qf
+from quatfilt.chain import OF_THE_CLIP
 from quatfilt.methods import METHODS
 from quatfilt.presets import PRESETS
 
 FRAMES = 90
-
-SHARED = "confidence, gaps, max_gap, fps, scalar_first"
 
 
 def clip(joints=3, frames=FRAMES, seed=0):
@@ -81,24 +82,26 @@ def test_translation_is_a_switch(value):
 # ---- which step an option is for
 
 
+def options(function, *, without=()):
+    """The options of a filter as messages list them."""
+    return ", ".join(name for name in list(inspect.signature(function).parameters)[1:] if name not in without)
+
+
 def test_unknown_options():
     assert refused(TypeError, radius=3, method="nonlocal_pose_means") == (
-        "radius: expected an option of nonlocal_pose_means (search_radius, patch_radius, bandwidth, distance, weights, "
-        "neighbors, library, chart, boundary, lookahead, confidence, gaps, max_gap, fps, scalar_first), got this name"
+        f"radius: expected an option of nonlocal_pose_means ({options(qf.nonlocal_pose_means)}), got this name"
     )
     assert refused(TypeError, sigma=3, method=["bilateral", "orientation_filter", "bilateral"]) == (
-        "sigma: expected an option of bilateral (radius, sigma_time, sigma_angle, kernel, iterations, boundary, gaps, "
-        "max_gap, fps, scalar_first) or orientation_filter (mask, iterations, boundary, gaps, max_gap, fps, scalar_first), "
-        "got this name"
+        f"sigma: expected an option of bilateral ({options(qf.bilateral)}) or "
+        "orientation_filter (mask, iterations, boundary, gaps, max_gap, fps, scalar_first), got this name"
     )
 
 
 def test_options_of_a_step_that_it_does_not_have():
     message = refused(TypeError, method="bilateral", bilateral={"sigma": 3})
-    assert message == (
-        "bilateral.sigma: expected an option of bilateral (radius, sigma_time, sigma_angle, kernel, iterations, boundary), "
-        "got this name"
-    )
+    own = options(qf.bilateral, without=OF_THE_CLIP)
+    assert message == f"bilateral.sigma: expected an option of bilateral ({own}), got this name"
+    assert own.startswith("radius, sigma_time, sigma_angle, kernel, iterations, boundary")
 
 
 @pytest.mark.parametrize("option", ["gaps", "max_gap", "fps", "confidence", "scalar_first"])

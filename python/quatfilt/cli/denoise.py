@@ -74,7 +74,7 @@ def denoise(
         typer.Option(
             "--report",
             metavar="FILE|-",
-            help="What the filter did, as .png, .pdf, .svg, .json, .txt, or - for the terminal. May be given several times.",
+            help="What the filter did, as .png, .pdf, .svg, .json, .txt, or - for the terminal (or --json). May be given several times.",
             show_default=False,
         ),
     ] = None,
@@ -111,7 +111,8 @@ def denoise(
         },
     )
     _steps.planned(wish)
-    wanted = _wanted(reports or [], json=json)
+    wanted = reports or []
+    _refuse_others(wanted)
     how = _cleaning.How(wish, translation, fps, skeleton, first_frame, confidence)
     target = output or beside(path)
     with _output.busy(f"reading {path.name}"):
@@ -119,7 +120,7 @@ def denoise(
         truth = None if reference is None else _reference(reference, path, motion, how)
     cleaned = _cleaning.clean(path, target, motion, how, busy=_output.busy)
     told = None
-    if wanted or json:
+    if wanted:
         with _output.busy("measuring"):
             told = _report(cleaned, truth)
         for file in wanted:
@@ -166,17 +167,14 @@ def _search_radius(text: str) -> str:
         raise ValueError(f"--search-radius: expected a number of frames or all, got {text!r}") from None
 
 
-def _wanted(reports: list[Path], *, json: bool) -> list[Path]:
-    """Return where the report goes, and refuse what cannot be written before anything is computed."""
+def _refuse_others(reports: list[Path]) -> None:
+    """Refuse reports that cannot be written, before anything is computed."""
     for file in reports:
-        if file == _TERMINAL and json:
-            raise ValueError("--report: expected a file beside --json, got -")
         if file != _TERMINAL:
             try:
                 check_path(file)
             except ValueError as error:
                 raise ValueError(f"--report: {str(error).removeprefix('path: ')}, or -") from None
-    return reports
 
 
 def _report(cleaned: _cleaning.Cleaned, truth: Motion | None) -> Report:

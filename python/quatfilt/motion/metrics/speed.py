@@ -54,8 +54,7 @@ def jerk(q: ArrayLike, *, fps: float = 1.0, per: Per = "clip", scalar_first: boo
     how = _validation.choice(per, "per", PER)
     rate = _validation.number(fps, "fps", above=0)
     rotations, shape = _samples.clip(q, "q", scalar_first=scalar_first)
-    jerks = np.diff(_samples.turns(rotations[:-1], rotations[1:]), n=2, axis=0) * rate**3
-    return _samples.reduced(np.degrees(np.linalg.norm(jerks, axis=-1)), how, shape)
+    return _samples.reduced(jerks(steps(rotations), rate), how, shape)
 
 
 def peak_velocity_kept(
@@ -95,13 +94,27 @@ def peak_velocity_kept(
     """
     how = _validation.choice(per, "per", PER)
     truth, other, shape = _samples.pair(reference, estimate, scalar_first=scalar_first)
-    speed = np.linalg.norm(_samples.turns(truth[:-1], truth[1:]), axis=-1)
-    found = np.linalg.norm(_samples.turns(other[:-1], other[1:]), axis=-1)
-    missing = np.isnan(speed) | np.isnan(found)
-    peak = _samples.percentile(np.where(missing, np.nan, speed), _PEAK)
-    peak[peak <= _AT_REST] = np.nan
-    kept = _samples.percentile(np.where(missing, np.nan, found), _PEAK) / peak
+    kept = peaks_kept(steps(truth), steps(other))
     return float(_samples.mean(kept)) if how == "clip" else kept.reshape(shape[1:-1])
 
 
-__all__ = ["jerk", "peak_velocity_kept"]
+def steps(rotations: Values) -> Values:
+    """Rotation vectors from each frame to the next, ``(frames − 1, joints, 3)``, in radians."""
+    return _samples.turns(rotations[:-1], rotations[1:])
+
+
+def jerks(turns: Values, fps: float) -> Values:
+    """Lengths of the rotational jerk, ``(frames − 3, joints)``, in degrees per second cubed, of `steps`."""
+    return np.asarray(np.degrees(np.linalg.norm(np.diff(turns, n=2, axis=0), axis=-1)) * fps**3)
+
+
+def peaks_kept(reference: Values, estimate: Values) -> Values:
+    """Share of the peak angular speed of each joint that is kept, ``(joints,)``, from the `steps` of both."""
+    speed, found = (np.linalg.norm(turns, axis=-1) for turns in (reference, estimate))
+    missing = np.isnan(speed) | np.isnan(found)
+    peak = _samples.percentile(np.where(missing, np.nan, speed), _PEAK)
+    peak[peak <= _AT_REST] = np.nan
+    return np.asarray(_samples.percentile(np.where(missing, np.nan, found), _PEAK) / peak)
+
+
+__all__ = ["jerk", "jerks", "peak_velocity_kept", "peaks_kept", "steps"]

@@ -12,6 +12,7 @@ from quatfilt.motion.defects import find_defects
 from quatfilt.motion.metrics import _samples
 from quatfilt.motion.metrics._samples import Values
 from quatfilt.motion.metrics.feet import foot_joints
+from quatfilt.motion.metrics.speed import jerks, peaks_kept, steps
 from quatfilt.motion.report.sides import Side
 from quatfilt.noise.noise import noise_level
 
@@ -98,9 +99,22 @@ Column: TypeAlias = tuple[NDArray[np.generic], Any]
 
 def joints(before: Side, after: Side, reference: Side | None = None) -> tuple[tuple[Joint, ...], Joint]:
     """Measure each joint, and all together."""
-    columns = _of_a_filter(before, after)
+    clips = (before, after) if reference is None else (before, after, reference)
+    turns = [steps(side.rotations) for side in clips]
+    jerk = [_mean(jerks(turned, side.fps or 1.0)) for side, turned in zip(clips, turns, strict=True)]
+    columns = {
+        **_of_a_filter(before, after),
+        "jerk_before": jerk[0],
+        "jerk_after": jerk[1],
+        "peak_kept": _peak(turns[0], turns[1]),
+    }
     if reference is not None:
-        columns |= _against(reference, before, after)
+        columns |= {
+            **_against(reference, before, after),
+            "jerk_reference": jerk[2],
+            "peak_before": _peak(turns[2], turns[0]),
+            "peak_after": _peak(turns[2], turns[1]),
+        }
     each = tuple(
         Joint(name, **{column: values[joint].item() for column, (values, _) in columns.items()})
         for joint, name in enumerate(before.names)
@@ -112,38 +126,45 @@ def _of_a_filter(before: Side, after: Side) -> dict[str, Column]:
     a, b = before.rotations, after.rotations
     change = np.asarray(metrics.angle_error(a, b, per="sample"))
     rate = {} if before.fps is None else {"fps": before.fps}
-    found, left = find_defects(a, **rate), find_defects(b, **rate)
+    found, left = find_defects(a, **rate).spikes, find_defects(b, **rate).spikes
+    missing, still_missing = (np.asarray(np.isnan(q[..., 0])) for q in (a, b))
     return {
-        "change_mean": (_samples.mean(change, axis=0), float(_samples.mean(change))),
+        "change_mean": _mean(change),
         "change_p95": _percentile(change),
         "change_max": _largest(change),
         "noise_before": _noise(a),
         "noise_after": _noise(b),
-        "jerk_before": _jerk(before),
-        "jerk_after": _jerk(after),
-        "peak_kept": _peak(a, b),
-        "missing": _count(_missing(a)),
-        "filled": _count(_missing(a) & ~_missing(b)),
-        "spikes": _count(found.spikes),
-        "spikes_replaced": _count(found.spikes & ~left.spikes),
+        "missing": _count(missing),
+        "filled": _count(missing & ~still_missing),
+        "spikes": _count(found),
+        "spikes_replaced": _count(found & ~left),
     }
 
 
 def _against(reference: Side, before: Side, after: Side) -> dict[str, Column]:
-    truth = reference.rotations
-    columns = {"jerk_reference": _jerk(reference)}
+    columns: dict[str, Column] = {}
     for when, side in (("before", before), ("after", after)):
-        error = np.asarray(metrics.angle_error(truth, side.rotations, per="sample"))
+        error = np.asarray(metrics.angle_error(reference.rotations, side.rotations, per="sample"))
         columns |= {
-            f"error_{when}": (_samples.mean(error, axis=0), float(_samples.mean(error))),
+            f"error_{when}": _mean(error),
             f"error_p95_{when}": _percentile(error),
-            f"psnr_{when}": (
-                np.asarray(metrics.psnr(truth, side.rotations, per="joint")),
-                float(metrics.psnr(truth, side.rotations)),
-            ),
-            f"peak_{when}": _peak(truth, side.rotations),
+            f"psnr_{when}": _psnr(error),
         }
     return columns
+
+
+def _mean(values: Values) -> Column:
+    return _samples.mean(values, axis=0), float(_samples.mean(values))
+
+
+def _psnr(error: Values) -> Column:
+    """Peak signal-to-noise ratio from angles in degrees: a square of an angle is that of three components."""
+    each, overall = _mean(np.square(np.radians(error)) / 3)
+    with np.errstate(divide="ignore"):
+        return (
+            20 * np.log10(np.pi) - 10 * np.log10(each),
+            float(20 * np.log10(np.pi) - 10 * np.log10(np.float64(overall))),
+        )
 
 
 def _percentile(values: Values) -> Column:
@@ -165,25 +186,13 @@ def _noise(q: Values) -> Column:
     return noise, float(np.sqrt(np.mean(noise**2))) if len(noise) else float("nan")
 
 
-def _jerk(side: Side) -> Column:
-    rate = 1.0 if side.fps is None else side.fps
-    return (
-        np.asarray(metrics.jerk(side.rotations, fps=rate, per="joint")),
-        float(metrics.jerk(side.rotations, fps=rate)),
-    )
-
-
 def _peak(reference: Values, other: Values) -> Column:
-    each = np.asarray(metrics.peak_velocity_kept(reference, other, per="joint"))
+    each = peaks_kept(reference, other)
     return each, float(_samples.mean(each))
 
 
 def _count(samples: Mask) -> Column:
     return np.sum(samples, axis=0), int(np.sum(samples))
-
-
-def _missing(q: Values) -> Mask:
-    return np.asarray(np.isnan(q).any(axis=-1))
 
 
 def feet(before: Side, after: Side, reference: Side | None = None) -> tuple[Foot, ...]:
