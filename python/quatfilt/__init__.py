@@ -11,11 +11,16 @@ from quatfilt._core import is_debug_build as _is_debug_build
 from quatfilt.denoise import denoise
 from quatfilt.errors import FileAccessError, FileFormatError, QuatfiltError
 from quatfilt.filters.bilateral import bilateral
+from quatfilt.filters.butterworth import butterworth
 from quatfilt.filters.gaps import fill_gaps
+from quatfilt.filters.gaussian import gaussian
 from quatfilt.filters.nonlocal_pose_means import nonlocal_pose_means
 from quatfilt.filters.orientation_filter import orientation_filter
+from quatfilt.filters.savgol import savgol
 from quatfilt.filters.stream.bilateral import BilateralStream
 from quatfilt.filters.stream.nonlocal_pose_means import NonlocalPoseMeansStream
+from quatfilt.filters.wavelet import wavelet
+from quatfilt.filters.weighted_moving_mean import weighted_moving_mean
 from quatfilt.formats.files import read_motion, write_motion
 from quatfilt.motion import metrics
 from quatfilt.motion.motion import Motion
@@ -47,11 +52,13 @@ __all__ = [
     "add_gaussian_noise",
     "add_impulse_noise",
     "bilateral",
+    "butterworth",
     "conjugate",
     "continuous",
     "denoise",
     "exp",
     "fill_gaps",
+    "gaussian",
     "geodesic_distance",
     "get_backend",
     "get_num_threads",
@@ -66,9 +73,12 @@ __all__ = [
     "read_motion",
     "report",
     "resample",
+    "savgol",
     "set_num_threads",
     "simd_level",
     "slerp",
     "use_backend",
+    "wavelet",
+    "weighted_moving_mean",
     "write_motion",
 ]

@@ -10,14 +10,17 @@ __all__ = [
     "PoseStream",
     "bilateral",
     "bilateral_stream",
+    "butterworth",
     "conjugate",
     "continuous",
     "continuous_euler",
+    "develop",
     "exp",
     "fill_gaps",
     "forward_kinematics",
     "forward_kinematics_moving",
     "from_euler",
+    "gaussian",
     "geodesic_distance",
     "get_num_threads",
     "is_debug_build",
@@ -32,11 +35,15 @@ __all__ = [
     "read_amc",
     "read_asf",
     "read_bvh",
+    "savgol",
+    "savgol_derivative",
     "scan",
     "set_num_threads",
     "simd_level",
     "slerp",
     "to_euler",
+    "undevelop",
+    "weighted_moving_mean",
     "write_bvh",
 ]
 
@@ -54,8 +61,43 @@ def bilateral(
     /,
 ) -> tuple[Array, Array | None]: ...
 
+# filters/butterworth
+def butterworth(
+    q: Array,
+    translation: Array | None,
+    confidence: Array | None,
+    reference_sigma: NDArray[np.float64],
+    sections: NDArray[np.float64],
+    states: NDArray[np.float64],
+    padding: int,
+    /,
+) -> tuple[Array, Array | None]: ...
+
+# filters/development
+def develop(
+    q: Array, confidence: Array | None, reference_sigma: NDArray[np.float64], /
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+def undevelop(
+    q: Array,
+    reference: NDArray[np.float64],
+    development: NDArray[np.float64],
+    vectors: NDArray[np.float64],
+    /,
+) -> Array: ...
+
 # filters/gaps
 def fill_gaps(q: Array, max_gap: int, /) -> tuple[Array, Mask]: ...
+
+# filters/gaussian
+def gaussian(
+    q: Array,
+    translation: Array | None,
+    confidence: Array | None,
+    reference_sigma: NDArray[np.float64],
+    sigma: NDArray[np.float64],
+    boundary: str,
+    /,
+) -> tuple[Array, Array | None]: ...
 
 # filters/nonlocal_pose_means
 def nonlocal_pose_means(
@@ -78,6 +120,26 @@ def nonlocal_pose_means(
 def orientation_filter(
     q: Array, translation: Array | None, mask: NDArray[np.float64], iterations: int, boundary: str, /
 ) -> tuple[Array, Array | None]: ...
+
+# filters/savgol
+def savgol(
+    q: Array,
+    translation: Array | None,
+    confidence: Array | None,
+    reference_sigma: NDArray[np.float64],
+    fit: NDArray[np.float64],
+    values: NDArray[np.float64],
+    /,
+) -> tuple[Array, Array | None]: ...
+def savgol_derivative(
+    q: Array,
+    confidence: Array | None,
+    reference_sigma: NDArray[np.float64],
+    fit: NDArray[np.float64],
+    values: NDArray[np.float64],
+    derivatives: NDArray[np.float64],
+    /,
+) -> Array: ...
 
 # filters/stream
 @final
@@ -114,6 +176,16 @@ def nonlocal_pose_means_stream(
     lookahead: int,
     /,
 ) -> PoseStream: ...
+
+# filters/weighted_moving_mean
+def weighted_moving_mean(
+    q: Array,
+    translation: Array | None,
+    confidence: Array | None,
+    reference_sigma: NDArray[np.float64],
+    iterations: int,
+    /,
+) -> tuple[Array, Array | None]: ...
 
 # formats
 class FormatError(ValueError): ...

@@ -4,7 +4,7 @@ Arrays leave this module native, C-contiguous, aligned, float32 or float64, and 
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from types import MappingProxyType
 from typing import Any, TypeVar
 
@@ -20,6 +20,9 @@ _FAR_FROM_UNIT = 0.1
 _LONGEST_REACH = 5000
 """Frames, weighted: with longer masks, or a smaller sum of their weights, rotations would move by more turns than sine
 and cosine take exactly in float32."""
+
+_LOWEST_FREQUENCY = 1e-6
+"""Periods per frame: the coefficients of filters for lower ones have lost too many digits."""
 
 _WIDEST_INTEGERS = "biu"
 
@@ -166,6 +169,14 @@ def integer(value: Any, name: str, *, at_least: int | None = None, at_most: int 
     return result
 
 
+def odd(value: Any, name: str) -> int:
+    """Return `value` as an odd int of at least 1."""
+    result = integer(value, name, at_least=1)
+    if result % 2 == 0:
+        raise ValueError(f"{name}: expected an odd number, got {result}")
+    return result
+
+
 def choice(
     value: Any,
     name: str,
@@ -180,6 +191,13 @@ def choice(
     reason = elsewhere.get(value) if isinstance(value, str) else None
     expected = f"{name}: expected one of {', '.join(map(repr, options))}, got {value!r}"
     raise ValueError(f"{expected}: {reason}" if reason else expected)
+
+
+def known(value: Any, name: str, names: Collection[str], expected: str) -> str:
+    """Return `value` if it is one of many names; `expected` says of which."""
+    if isinstance(value, str) and value in names:
+        return value
+    raise ValueError(f"{name}: expected {expected}, got {value!r}")
 
 
 def per_joint(
@@ -203,6 +221,20 @@ def per_joint(
         raise ValueError(f"{name}: expected a number or one per joint, shape ({joints},), got {array.shape}")
     for joint, one in enumerate(array):
         number(one, f"{name}[{joint}]", **bounds, infinite=infinite)
+    return array
+
+
+def frequencies(value: Any, name: str, joints: int, fps: float) -> NDArray[np.float64]:
+    """Return a frequency below the Nyquist frequency, or one per joint, as a float64 array ``(joints,)``."""
+    array = per_joint(value, name, joints, above=0)
+    lowest, nyquist = _LOWEST_FREQUENCY * fps, fps / 2
+    for joint, one in enumerate(array):
+        if not lowest <= one < nyquist:
+            place = name if np.ndim(value) == 0 else f"{name}[{joint}]"
+            raise ValueError(
+                f"{place}: expected a number of at least {lowest:g} and below the Nyquist frequency "
+                f"fps / 2 = {nyquist:g}, got {one:g}"
+            )
     return array
 
 

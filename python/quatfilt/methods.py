@@ -7,7 +7,16 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from quatfilt._typing import Array
-from quatfilt.filters import bilateral, nonlocal_pose_means, orientation_filter
+from quatfilt.filters import (
+    bilateral,
+    butterworth,
+    gaussian,
+    nonlocal_pose_means,
+    orientation_filter,
+    savgol,
+    wavelet,
+    weighted_moving_mean,
+)
 
 AUTO: Final = "auto"
 """Stands for the best chain that this version has, or for that of a preset."""
@@ -51,10 +60,17 @@ class Method:
 
 FILTERS: Final[dict[str, Method]] = {
     "bilateral": Method(bilateral.bilateral, bilateral.with_translation, angles=("sigma_angle",)),
+    "butterworth": Method(butterworth.butterworth, butterworth.with_translation),
+    "gaussian": Method(gaussian.gaussian, gaussian.with_translation),
     "nonlocal_pose_means": Method(
         nonlocal_pose_means.nonlocal_pose_means, nonlocal_pose_means.with_translation, angles=("bandwidth",)
     ),
     "orientation_filter": Method(orientation_filter.orientation_filter, orientation_filter.with_translation),
+    "savgol": Method(savgol.savgol, savgol.with_translation, hidden=("deriv",)),
+    "wavelet": Method(wavelet.wavelet, wavelet.with_translation, angles=("threshold",)),
+    "weighted_moving_mean": Method(
+        weighted_moving_mean.weighted_moving_mean, weighted_moving_mean.with_translation
+    ),
 }
 """The filters by name."""
 

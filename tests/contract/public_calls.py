@@ -66,11 +66,13 @@ CALLS = {
     "add_gaussian_noise": lambda a, _b, _v: qf.add_gaussian_noise(a, sigma=0.1, rng=1),
     "add_impulse_noise": lambda a, _b, _v: qf.add_impulse_noise(a, probability=0.1, rng=1),
     "bilateral": lambda a, _b, _v: qf.bilateral(with_gaps(a), sigma_angle=1.0, iterations=2),
+    "butterworth": lambda a, _b, _v: qf.butterworth(with_gaps(a), cutoff=0.1),
     "conjugate": lambda a, _b, _v: qf.conjugate(a),
     "continuous": lambda a, _b, _v: qf.continuous(with_gaps(a)),
     "denoise": lambda a, _b, _v: qf.denoise(with_gaps(a)),
     "exp": lambda _a, _b, v: qf.exp(v),
     "fill_gaps": lambda a, _b, _v: qf.fill_gaps(with_gaps(a))[0],
+    "gaussian": lambda a, _b, _v: qf.gaussian(with_gaps(a), sigma=2.5),
     "geodesic_distance": lambda a, b, _v: qf.geodesic_distance(a, b),
     "log": lambda a, _b, _v: qf.log(a),
     "mean": lambda a, _b, _v: qf.mean(with_gaps(a)),
@@ -80,6 +82,9 @@ CALLS = {
     "normalize": lambda a, _b, _v: qf.normalize(2 * a),
     "orientation_filter": lambda a, _b, _v: qf.orientation_filter(with_gaps(a), [1, 2, 3, 2, 1]),
     "resample": lambda a, _b, _v: qf.resample(a, fps=30, new_fps=31.7),
+    "savgol": lambda a, _b, _v: qf.savgol(with_gaps(a), window_length=11),
     "slerp": lambda a, _b, _v: qf.slerp(a, np.arange(FRAMES), np.linspace(0, FRAMES - 1, 10_001)),
+    "wavelet": lambda a, _b, _v: qf.wavelet(with_gaps(a)),
+    "weighted_moving_mean": lambda a, _b, _v: qf.weighted_moving_mean(with_gaps(a), iterations=3),
 }
 """From the name to a call with what `samples` returns."""

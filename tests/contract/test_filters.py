@@ -12,19 +12,31 @@ from scipy.spatial.transform import Rotation
 
 FILTERS = {
     "bilateral": qf.bilateral,
+    "butterworth": lambda q, *more, cutoff=0.1, **options: qf.butterworth(q, *more, cutoff=cutoff, **options),
     "denoise": qf.denoise,
+    "gaussian": lambda q, *more, sigma=2.0, **options: qf.gaussian(q, *more, sigma=sigma, **options),
     "nonlocal_pose_means": qf.nonlocal_pose_means,
     "orientation_filter": lambda q, *more, **options: qf.orientation_filter(
         q, [1, 2, 4, 2, 1], *more, **options
     ),
+    "savgol": lambda q, *more, window_length=7, **options: qf.savgol(
+        q, *more, window_length=window_length, **options
+    ),
+    "wavelet": qf.wavelet,
+    "weighted_moving_mean": qf.weighted_moving_mean,
 }
 """From clip to clip, with the options that all filters have in common."""
 
 OPTIONS = {
     "bilateral": qf.bilateral.__kwdefaults__,
+    "butterworth": {"cutoff": None, **qf.butterworth.__kwdefaults__},
     "denoise": qf.nonlocal_pose_means.__kwdefaults__,
+    "gaussian": {"sigma": None, **qf.gaussian.__kwdefaults__},
     "nonlocal_pose_means": qf.nonlocal_pose_means.__kwdefaults__,
     "orientation_filter": qf.orientation_filter.__kwdefaults__,
+    "savgol": {"window_length": None, **qf.savgol.__kwdefaults__},
+    "wavelet": qf.wavelet.__kwdefaults__,
+    "weighted_moving_mean": qf.weighted_moving_mean.__kwdefaults__,
 }
 """The options of each filter."""
 
@@ -336,10 +348,41 @@ def test_a_window_longer_than_the_clip_works(window, frames, boundary):
 POSITIVE = "expected a number above 0"
 NOT_NEGATIVE = "expected a number of at least 0"
 
+BELOW_NYQUIST = "expected a number of at least 1e-06 and below the Nyquist frequency fps / 2 = 0.5"
+
 WRONG_OPTIONS = [
     ("radius", -1, ValueError, "expected an integer of at least 0 and at most 5000, got -1"),
     ("radius", 5001, ValueError, "expected an integer of at least 0 and at most 5000, got 5001"),
     ("radius", 4.0, TypeError, "expected an integer of at least 0 and at most 5000, got float"),
+    ("cutoff", 0, ValueError, f"{POSITIVE}, got 0"),
+    ("cutoff", math.inf, ValueError, f"{POSITIVE}, got inf"),
+    ("cutoff", 6, ValueError, f"{BELOW_NYQUIST}, got 6"),
+    ("cutoff", [0.1, 0.5, 0.1], ValueError, f"[1]{{}}{BELOW_NYQUIST}, got 0.5"),
+    ("cutoff", 1e-7, ValueError, f"{BELOW_NYQUIST}, got 1e-07"),
+    ("cutoff", [0.1] * 4, ValueError, "expected a number or one per joint, shape (3,), got (4,)"),
+    ("order", 0, ValueError, "expected an integer of at least 1 and at most 20, got 0"),
+    ("order", 21, ValueError, "expected an integer of at least 1 and at most 20, got 21"),
+    ("order", 4.0, TypeError, "expected an integer of at least 1 and at most 20, got float"),
+    ("threshold", "soft", ValueError, "expected one of 'auto', 'bayes', 'universal', got 'soft'"),
+    ("threshold", -0.1, ValueError, f"{NOT_NEGATIVE}, got -0.1"),
+    ("threshold", math.inf, ValueError, f"{NOT_NEGATIVE}, got inf"),
+    ("threshold", [0.1, 0.1], ValueError, "expected a number or one per joint, shape (3,), got (2,)"),
+    ("threshold", None, TypeError, "expected real numbers, got dtype object"),
+    ("window_length", 0, ValueError, "expected an integer of at least 1, got 0"),
+    ("window_length", 8, ValueError, "expected an odd number, got 8"),
+    ("window_length", 91, ValueError, "expected at most as many as the clip's 90 frames, got 91"),
+    ("window_length", 7.0, TypeError, "expected an integer of at least 1, got float"),
+    ("polyorder", 7, ValueError, "expected an integer of at least 0 and at most 6, got 7"),
+    ("polyorder", -1, ValueError, "expected an integer of at least 0 and at most 6, got -1"),
+    ("polyorder", 2.5, TypeError, "expected an integer of at least 0 and at most 6, got float"),
+    ("deriv", 3, ValueError, "expected an integer of at least 0 and at most 2, got 3"),
+    ("deriv", True, TypeError, "expected an integer of at least 0 and at most 2, got bool"),
+    ("sigma", 0, ValueError, f"{POSITIVE} and at most 25000, got 0"),
+    ("sigma", 1e5, ValueError, f"{POSITIVE} and at most 25000, got 100000.0"),
+    ("sigma", math.nan, ValueError, f"{POSITIVE} and at most 25000, got nan"),
+    ("sigma", [1.0, 2.0], ValueError, "expected a number or one per joint, shape (3,), got (2,)"),
+    ("sigma", [1.0, -2.0, 1.0], ValueError, f"[1]{{}}{POSITIVE} and at most 25000, got -2.0"),
+    ("sigma", None, TypeError, "expected real numbers, got dtype object"),
     ("sigma_time", 0, ValueError, f"{POSITIVE}, got 0"),
     ("sigma_time", math.inf, ValueError, f"{POSITIVE}, got inf"),
     ("sigma_time", [1.0], TypeError, f"{POSITIVE}, got list"),

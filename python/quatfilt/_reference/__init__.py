@@ -10,9 +10,14 @@ or with four zeros.
 """
 
 from quatfilt._reference.filters.bilateral import bilateral
+from quatfilt._reference.filters.butterworth import butterworth
+from quatfilt._reference.filters.development import develop, undevelop
 from quatfilt._reference.filters.gaps import fill_gaps
+from quatfilt._reference.filters.gaussian import gaussian
 from quatfilt._reference.filters.nonlocal_pose_means import nonlocal_pose_means
 from quatfilt._reference.filters.orientation_filter import orientation_filter
+from quatfilt._reference.filters.savgol import savgol, savgol_derivative
+from quatfilt._reference.filters.weighted_moving_mean import weighted_moving_mean
 from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
 from quatfilt._reference.noise.noise import noise_level
 from quatfilt._reference.rotations.euler import continuous_euler, from_euler, to_euler
@@ -31,14 +36,17 @@ from quatfilt._reference.rotations.resample import slerp
 
 __all__ = [
     "bilateral",
+    "butterworth",
     "conjugate",
     "continuous",
     "continuous_euler",
+    "develop",
     "exp",
     "fill_gaps",
     "forward_kinematics",
     "forward_kinematics_moving",
     "from_euler",
+    "gaussian",
     "geodesic_distance",
     "log",
     "mean",
@@ -47,7 +55,11 @@ __all__ = [
     "nonlocal_pose_means",
     "normalize",
     "orientation_filter",
+    "savgol",
+    "savgol_derivative",
     "scan",
     "slerp",
     "to_euler",
+    "undevelop",
+    "weighted_moving_mean",
 ]

@@ -16,17 +16,27 @@ mod _core {
     #[pymodule_export]
     use super::filters::bilateral::bilateral;
     #[pymodule_export]
+    use super::filters::butterworth::butterworth;
+    #[pymodule_export]
+    use super::filters::development::{develop, undevelop};
+    #[pymodule_export]
     use super::filters::gaps::fill_gaps;
+    #[pymodule_export]
+    use super::filters::gaussian::gaussian;
     #[pymodule_export]
     use super::filters::nonlocal_pose_means::nonlocal_pose_means;
     #[pymodule_export]
     use super::filters::orientation_filter::orientation_filter;
+    #[pymodule_export]
+    use super::filters::savgol::{savgol, savgol_derivative};
     #[pymodule_export]
     use super::filters::stream::PoseStream;
     #[pymodule_export]
     use super::filters::stream::bilateral::bilateral_stream;
     #[pymodule_export]
     use super::filters::stream::nonlocal_pose_means::nonlocal_pose_means_stream;
+    #[pymodule_export]
+    use super::filters::weighted_moving_mean::weighted_moving_mean;
     #[pymodule_export]
     use super::formats::FormatError;
     #[pymodule_export]

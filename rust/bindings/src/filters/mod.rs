@@ -1,8 +1,13 @@
 //! Filters.
 
 pub(crate) mod bilateral;
+pub(crate) mod butterworth;
+pub(crate) mod development;
 pub(crate) mod gaps;
+pub(crate) mod gaussian;
 mod names;
 pub(crate) mod nonlocal_pose_means;
 pub(crate) mod orientation_filter;
+pub(crate) mod savgol;
 pub(crate) mod stream;
+pub(crate) mod weighted_moving_mean;

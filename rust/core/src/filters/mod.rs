@@ -1,9 +1,15 @@
 //! Filters: a clip in, a cleaner clip out.
 
 pub mod bilateral;
+pub mod butterworth;
+mod columns;
+pub mod development;
 pub mod gaps;
+pub mod gaussian;
 mod local;
 pub mod nonlocal_pose_means;
 pub mod orientation_filter;
 mod samples;
+pub mod savgol;
 pub mod stream;
+pub mod weighted_moving_mean;

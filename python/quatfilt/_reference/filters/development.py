@@ -1,0 +1,214 @@
+"""Rotations as vectors about a reference path: what filters for numbers can be applied to.
+
+Of a noisy path `q_t` a smooth one `r_t` is made, an average in R⁴, and rolled out: the *development* adds up the turns
+from frame to frame,
+
+    `R_0 = 0`,    `R_{t+1} = R_t + 2 log(r_t⁻¹ r_{t+1})`,
+
+and each sample becomes a vector beside it, `y_t = R_t + 2 log(r_t⁻¹ q_t)`, all in radians of rotation and in the frame of the
+body. A linear filter `F` for numbers that keeps constants, applied to the columns of `y`, gives rotations back:
+
+    `r_t · exp((F(y)_t − R_t) / 2)`.
+
+With `r = q` this is Lee and Shin's construction. There the commutators of the noise add up from frame to frame; about a
+smooth path they do not. Nothing has to stay within one chart, so joints may turn as far as they like; and about one fixed
+axis `y` are the unrolled angles.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from quatfilt._reference._arrays import Reals
+from quatfilt._reference.filters.boundary import Boundary, extend_by_index, extend_vectors
+from quatfilt._reference.filters.nonlocal_pose_means import in_hemisphere_of
+from quatfilt._reference.rotations.quaternion import between, exp, log_short, multiply, norm, normalize
+
+SHORTEST_MEAN = 0.1
+"""Length of an average of unit quaternions below which its direction is chance: the frames turn right round within the
+mask."""
+
+
+def develop(q: Reals, confidence: Reals | None, reference_sigma: Reals) -> tuple[Reals, Reals, Reals]:
+    """Roll rotations out about their reference path.
+
+    Parameters
+    ----------
+    q : array (frames, joints, 4)
+        Rotations without missing samples.
+    confidence : array (frames, joints) or None
+        Weights of the samples in the reference path, from 0 to 1.
+    reference_sigma : array (joints,), frames
+        Deviation of the Gaussian mask that makes the reference path.
+
+    Returns
+    -------
+    reference : array (frames, joints, 4), float64
+        The path `r` of unit quaternions.
+    development : array (frames, joints, 3), float64, radians
+        `R`.
+    vectors : array (frames, joints, 3), float64, radians
+        `y`.
+    """
+    path = aligned(normalize(q.astype(np.float64)), confidence)
+    return developed_about(reference_path(path, confidence, reference_sigma), path)
+
+
+def developed_about(reference: Reals, path: Reals) -> tuple[Reals, Reals, Reals]:
+    """Roll a path out about another one, both `(frames, joints, 4)`; what is returned is that of `develop`."""
+    turns = 2 * log_short(between(reference[:-1], reference[1:]))
+    development = np.zeros((*reference.shape[:2], 3))
+    development[1:] = np.cumsum(turns, axis=0)
+    return reference, development, development + 2 * log_short(between(reference, path))
+
+
+def undevelop(q: Reals, reference: Reals, development: Reals, vectors: Reals) -> Reals:
+    """Turn vectors back into rotations: `r_t · exp((y_t − R_t) / 2)`.
+
+    Parameters
+    ----------
+    q : array (frames, joints, 4)
+        The rotations that were developed; they say the dtype, and on which hemisphere the result begins.
+    reference : array (frames, joints, 4), float64
+    development : array (frames, joints, 3), float64, radians
+    vectors : array (frames, joints, 3), float64, radians
+
+    Returns
+    -------
+    array (frames, joints, 4)
+        Unit quaternions, continuous in sign from the hemisphere of the first frame of `q`.
+    """
+    if len(q) == 0:
+        return q.copy()
+    moved = normalize(multiply(reference, exp((vectors - development) / 2)))
+    return in_hemisphere_of(moved, q).astype(q.dtype)
+
+
+def aligned(path: Reals, confidence: Reals | None) -> Reals:
+    """Choose the signs of unit quaternions so that they can be averaged.
+
+    Each takes the hemisphere of a running mean of those before it, to which it then adds half of itself, the less the less
+    it is trusted. Beside the sample before alone, noise would turn the sign of the rest of the path too often.
+    """
+    result = path.copy()
+    if len(path) == 0:
+        return result
+    share = np.full(path.shape[:2], 0.5) if confidence is None else confidence.astype(np.float64) / 2
+    mean = path[0].copy()
+    for t in range(1, len(path)):
+        result[t] *= np.where(np.sum(mean * path[t], axis=-1) < 0, -1, 1)[:, None]
+        mean += share[t, :, None] * (result[t] - mean)
+    return result
+
+
+def reference_path(path: Reals, confidence: Reals | None, sigma: Reals) -> Reals:
+    """Average aligned quaternions under a Gaussian mask, and make them unit again.
+
+    Where the average is shorter than `SHORTEST_MEAN` the sample itself stands.
+    """
+    result = path.copy()
+    for joint in range(path.shape[1] if len(path) > 1 else 0):
+        trust = None if confidence is None else confidence[:, joint].astype(np.float64)
+        mean = weighted_mean(path[:, joint], trust, gaussian_mask(sigma[joint]), "mirror")
+        length = norm(mean)
+        clear = length >= SHORTEST_MEAN
+        result[clear, joint] = mean[clear] / length[clear, None]
+    return result
+
+
+def gaussian_mask(sigma: float) -> Reals:
+    """Gaussian weights `(2·radius + 1,)` of deviation `sigma` frames, cut off at four deviations, with the sum 1."""
+    radius = int(4 * sigma + 0.5)
+    lags = np.arange(-radius, radius + 1)
+    weights = np.exp(-0.5 * (lags / sigma) ** 2)
+    return np.asarray(weights / weights.sum())
+
+
+def weighted_mean(columns: Reals, trust: Reals | None, mask: Reals, boundary: Boundary) -> Reals:
+    """Take means of columns `(frames, k)`, at least two frames, under a mask whose sum is 1.
+
+    With the trust `c` of the frames, `Σ_j m_j c_{t+j} x_{t+j} / Σ_j m_j c_{t+j}`; where none under the mask is trusted, the
+    column stays as it is.
+    """
+    radius = len(mask) // 2
+    around = extend_vectors(columns, radius, boundary)
+    if trust is None:
+        return masked(around, mask)
+    weights = extend_by_index(trust[:, None], radius, boundary)
+    total = masked(weights, mask)
+    mean = masked(weights * around, mask)
+    return np.where(total > 0, mean / np.where(total > 0, total, 1), columns)
+
+
+def masked(around: Reals, mask: Reals) -> Reals:
+    """Add up `Σ_j m_j x_{t+j}` along columns that go on by the mask's radius beyond both ends."""
+    frames = len(around) - len(mask) + 1
+    result = np.zeros((frames, around.shape[1]))
+    for j, weight in enumerate(mask):
+        result += weight * around[j : j + frames]
+    return result
+
+
+@dataclass(frozen=True)
+class Columns:
+    """What a filter for numbers is applied to: the vectors of one joint, or a translation."""
+
+    vectors: Reals
+    """`(frames, 3)`."""
+    mean: Reals
+    """Their local mean, `(frames, 3)`: the development of the reference path."""
+    trust: Reals | None
+    """The samples' confidence, `(frames,)`."""
+
+    def trusted(self) -> Reals:
+        """Return the vectors, pulled towards their local mean by as much as they are not trusted."""
+        if self.trust is None:
+            return self.vectors
+        return self.mean + self.trust[:, None] * (self.vectors - self.mean)
+
+
+def filtered(
+    q: Reals,
+    translation: Reals | None,
+    confidence: Reals | None,
+    reference_sigma: Reals,
+    smooth: Callable[[Columns, int], Reals],
+) -> tuple[Reals, Reals | None]:
+    """Apply a filter for numbers to rotations, and to a translation as it applies to joint 0.
+
+    Parameters
+    ----------
+    q : array (frames, joints, 4)
+        Rotations without missing samples.
+    translation : array (frames, 3) or None
+        Positions of the root.
+    confidence : array (frames, joints) or None
+        From 0 to 1; that of joint 0 is the translation's too.
+    reference_sigma : array (joints,), frames
+        Deviation of the Gaussian mask that makes the reference path.
+    smooth : function
+        The filter: from the columns of a joint, and the joint, to `(frames, 3)`.
+
+    Returns
+    -------
+    rotations : array (frames, joints, 4)
+        Unit quaternions, continuous in sign from the hemisphere of the input's first frame.
+    translation : array (frames, 3) or None
+    """
+    frames, joints = q.shape[:2]
+    if frames < 2 or joints == 0:
+        return normalize(q), None if translation is None else translation.copy()
+    trust = None if confidence is None else confidence.astype(np.float64)
+    reference, development, vectors = develop(q, confidence, reference_sigma)
+    moved = np.empty_like(vectors)
+    for joint in range(joints):
+        own = None if trust is None else trust[:, joint]
+        moved[:, joint] = smooth(Columns(vectors[:, joint], development[:, joint], own), joint)
+    rotations = undevelop(q, reference, development, moved)
+    if translation is None:
+        return rotations, None
+    path = translation.astype(np.float64)
+    own = None if trust is None else trust[:, 0]
+    mean = weighted_mean(path, own, gaussian_mask(reference_sigma[0]), "mirror")
+    return rotations, smooth(Columns(path, mean, own), 0).astype(translation.dtype)

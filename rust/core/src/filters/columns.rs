@@ -1,0 +1,179 @@
+//! Columns of numbers along time under a mask.
+
+use crate::clip::Planes;
+use crate::parallel::Interrupt;
+use crate::simd::multiversion;
+use crate::window::{Boundary, extended_number};
+use crate::{Error, Real};
+
+/// Frames whose sums stay in registers while the lags go by; padded columns are multiples of it.
+pub(super) const BLOCK: usize = 32;
+
+/// Frames after which a long mask looks whether it was interrupted.
+const PIECE: usize = 256 * BLOCK;
+
+/// Deviations after which a Gaussian mask is cut off.
+const REACH: f64 = 4.0;
+
+/// A mask of `2·radius + 1` weights, the same before and after.
+#[derive(Debug, Clone)]
+pub(super) struct Mask {
+    /// Weights of the frame itself and of those after it.
+    later: Vec<f64>,
+}
+
+impl Mask {
+    /// Gaussian weights of deviation `sigma` frames, cut off at four deviations, with the sum 1.
+    pub(super) fn gaussian(sigma: f64) -> Self {
+        let radius = (REACH * sigma + 0.5).to_count();
+        let weight = |lag: usize| {
+            let scaled = lag as f64 / sigma;
+            Real::exp(-0.5 * (scaled * scaled))
+        };
+        let mut later: Vec<f64> = (0..=radius).map(weight).collect();
+        let total = 1.0 + 2.0 * later[1..].iter().sum::<f64>();
+        for weight in &mut later {
+            *weight /= total;
+        }
+        Self { later }
+    }
+
+    /// How many frames before and after a frame it weighs.
+    pub(super) fn radius(&self) -> usize {
+        self.later.len().saturating_sub(1)
+    }
+
+    /// Writes the sums `Σ_j m_j x_{t+j}` of a column that goes on by `radius` frames beyond both ends of `out`, whose length
+    /// is a multiple of [`BLOCK`].
+    pub(super) fn apply(&self, around: &[f64], out: &mut [f64], interrupt: &Interrupt) -> Result<(), Error> {
+        for (piece, out) in out.chunks_mut(PIECE).enumerate() {
+            interrupt.check()?;
+            let around = &around[piece * PIECE..][..out.len() + 2 * self.radius()];
+            sums(around, &self.later, out);
+        }
+        Ok(())
+    }
+
+    /// Means of columns of `frames` numbers, padded to a multiple of [`BLOCK`], in place, under a mask whose sum is 1.
+    ///
+    /// With the trust `c` of the frames, `Σ_j m_j c_{t+j} x_{t+j} / Σ_j m_j c_{t+j}`; where none under the mask is trusted, the
+    /// number stays.
+    pub(super) fn means(
+        &self,
+        columns: &mut [&mut [f64]],
+        trust: Option<&[f64]>,
+        (frames, boundary): (usize, Boundary),
+        spare: &mut Planes<f64>,
+        interrupt: &Interrupt,
+    ) -> Result<(), Error> {
+        let padded = frames.next_multiple_of(BLOCK);
+        spare.reshape(4, padded + 2 * self.radius());
+        let [around, weights, total, before] = spare.rows_mut::<4>(0);
+        let (total, before) = (&mut total[..padded], &mut before[..padded]);
+        if let Some(trust) = trust {
+            extend(&trust[..frames], self.radius(), boundary, false, weights);
+            self.apply(weights, total, interrupt)?;
+        }
+        for column in columns {
+            extend(&column[..frames], self.radius(), boundary, true, around);
+            if trust.is_some() {
+                before.copy_from_slice(column);
+                multiply(around, weights);
+            }
+            self.apply(around, column, interrupt)?;
+            if trust.is_some() {
+                divide(column, total, before);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Writes the sums `Σ_j m_j x_{t+j}` of a column that goes on by half the length of an odd mask beyond both ends of `out`, whose
+/// length is a multiple of [`BLOCK`].
+pub(super) fn slide(
+    mask: &[f64],
+    around: &[f64],
+    out: &mut [f64],
+    interrupt: &Interrupt,
+) -> Result<(), Error> {
+    for (piece, out) in out.chunks_mut(PIECE).enumerate() {
+        interrupt.check()?;
+        sums_of_any(&around[piece * PIECE..][..out.len() + mask.len() - 1], mask, out);
+    }
+    Ok(())
+}
+
+/// Writes a column with `radius` numbers more before and after it; zeros follow up to the length of `out`.
+pub(super) fn extend(column: &[f64], radius: usize, boundary: Boundary, slope: bool, out: &mut [f64]) {
+    let end = radius + column.len();
+    out[radius..end].copy_from_slice(column);
+    let beyond = |index: usize| {
+        extended_number(column, 1, 0, index.cast_signed() - radius.cast_signed(), boundary, slope)
+    };
+    for (i, value) in out[..radius].iter_mut().enumerate() {
+        *value = beyond(i);
+    }
+    for (i, value) in out[end..end + radius].iter_mut().enumerate() {
+        *value = beyond(end + i);
+    }
+    out[end + radius..].fill(0.0);
+}
+
+multiversion! {
+    /// Sums under a mask, for blocks of frames.
+    fn sums<T: Real>(around: &[T], later: &[T], out: &mut [T]) {
+        let radius = later.len() - 1;
+        for (block, out) in out.chunks_exact_mut(BLOCK).enumerate() {
+            let at = block * BLOCK + radius;
+            let mut totals = [T::ZERO; BLOCK];
+            let here = &around[at..at + BLOCK];
+            for i in 0..BLOCK {
+                totals[i] = later[0] * here[i];
+            }
+            for lag in 1..=radius {
+                let (before, after) = (&around[at - lag..][..BLOCK], &around[at + lag..][..BLOCK]);
+                for i in 0..BLOCK {
+                    totals[i] += later[lag] * (after[i] + before[i]);
+                }
+            }
+            out.copy_from_slice(&totals);
+        }
+    }
+}
+
+multiversion! {
+    /// Sums under a mask of any weights, for blocks of frames.
+    fn sums_of_any<T: Real>(around: &[T], mask: &[T], out: &mut [T]) {
+        for (block, out) in out.chunks_exact_mut(BLOCK).enumerate() {
+            let mut totals = [T::ZERO; BLOCK];
+            for (lag, &weight) in mask.iter().enumerate() {
+                let here = &around[block * BLOCK + lag..][..BLOCK];
+                for i in 0..BLOCK {
+                    totals[i] += weight * here[i];
+                }
+            }
+            out.copy_from_slice(&totals);
+        }
+    }
+}
+
+multiversion! {
+    fn multiply<T: Real>(values: &mut [T], weights: &[T]) {
+        for (value, weight) in values.iter_mut().zip(weights) {
+            *value *= *weight;
+        }
+    }
+}
+
+multiversion! {
+    /// Divides sums by the sums of their weights; where those are 0 the number before stays.
+    fn divide<T: Real>(sums: &mut [T], total: &[T], before: &[T]) {
+        let n = sums.len();
+        let (total, before) = (&total[..n], &before[..n]);
+        for i in 0..n {
+            let quotient = sums[i] / total[i];
+            sums[i] = if total[i] > T::ZERO { quotient } else { before[i] };
+        }
+    }
+}

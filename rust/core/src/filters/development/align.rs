@@ -1,0 +1,112 @@
+//! From a clip to the planes of a group of joints, with signs such that quaternions can be averaged.
+
+use super::super::columns::BLOCK;
+use crate::clip::Planes;
+use crate::rotations::quaternion::dot;
+use crate::simd::multiversion;
+use crate::{ClipView, Real};
+use std::ops::Range;
+
+/// Joints per task: of float32 they fill a cache line.
+pub(super) const GROUP: usize = 4;
+
+/// Planes of a joint: its quaternions and its confidence.
+pub(super) const ROWS: usize = 5;
+
+/// Frames per chunk.
+const CHUNK: usize = 64;
+
+/// A chunk of quaternions of one joint, as planes.
+type Chunk = [[f64; CHUNK]; 4];
+
+/// Reads unit quaternions of the joints of `range`, and their confidence: [`ROWS`] planes for each.
+///
+/// Each quaternion takes the hemisphere of a running mean of those before it, to which it then adds half of itself, the less
+/// the less it is trusted. Beside the sample before alone, noise would turn the sign of the rest of the path too often.
+pub(super) fn load<T: Real>(
+    clip: ClipView<'_, T>,
+    confidence: Option<&[T]>,
+    range: Range<usize>,
+    planes: &mut Planes<f64>,
+) {
+    let (frames, row) = (clip.frames(), clip.joints() * 4);
+    let joints = range.len();
+    planes.reshape(joints * ROWS, frames.next_multiple_of(BLOCK));
+    let mut rows = [[T::ONE; GROUP * 4]; CHUNK];
+    let mut samples = [[[1.0; CHUNK]; 4]; GROUP];
+    let mut shares = [[0.5; CHUNK]; GROUP];
+    let mut means = [None; GROUP];
+    for start in (0..frames).step_by(CHUNK) {
+        let length = CHUNK.min(frames - start);
+        // A plain copy first: its loads do not wait for each other, and memory is slow.
+        for (copy, frame) in rows.iter_mut().zip(clip.slice(start, start + length).data().chunks_exact(row)) {
+            let frame = &frame[range.start * 4..range.end * 4];
+            match frame.first_chunk() {
+                Some(whole) => *copy = *whole,
+                None => copy[..frame.len()].copy_from_slice(frame),
+            }
+        }
+        for (joint, samples) in samples[..joints].iter_mut().enumerate() {
+            units(&rows, joint, samples);
+        }
+        if let Some(confidence) = confidence {
+            let frames = confidence[start * clip.joints()..].chunks_exact(clip.joints());
+            for (i, trust) in frames.take(length).enumerate() {
+                for (share, trust) in shares.iter_mut().zip(&trust[range.clone()]) {
+                    share[i] = trust.to_f64() * 0.5;
+                }
+            }
+        }
+        align(&mut samples[..joints], &shares, &mut means, length);
+        for (joint, (samples, shares)) in samples[..joints].iter().zip(&shares).enumerate() {
+            let [w, x, y, z, trust] = planes.rows_mut::<ROWS>(joint * ROWS);
+            for (plane, samples) in [w, x, y, z].into_iter().zip(samples) {
+                plane[start..start + length].copy_from_slice(&samples[..length]);
+            }
+            for (trust, share) in trust[start..start + length].iter_mut().zip(shares) {
+                *trust = share + share;
+            }
+        }
+    }
+}
+
+multiversion! {
+    /// The unit quaternions of one joint of a group.
+    fn units<T: Real>(rows: &[[T; GROUP * 4]; CHUNK], joint: usize, out: &mut Chunk) {
+        let mut q = [[0.0; CHUNK]; 4];
+        for i in 0..CHUNK {
+            for c in 0..4 {
+                q[c][i] = rows[i][joint * 4 + c].to_f64();
+            }
+        }
+        for i in 0..CHUNK {
+            let one = [q[0][i], q[1][i], q[2][i], q[3][i]];
+            let length = dot(one, one).sqrt();
+            for c in 0..4 {
+                out[c][i] = one[c] / length;
+            }
+        }
+    }
+}
+
+/// Turns the signs of the first `length` quaternions of each joint, and moves the running means along.
+fn align(
+    samples: &mut [Chunk],
+    shares: &[[f64; CHUNK]; GROUP],
+    means: &mut [Option<[f64; 4]>],
+    length: usize,
+) {
+    // The joints' chains of sums do not wait for each other.
+    for i in 0..length {
+        for ((samples, shares), kept) in samples.iter_mut().zip(shares).zip(means.iter_mut()) {
+            let q = [samples[0][i], samples[1][i], samples[2][i], samples[3][i]];
+            let mean = kept.unwrap_or(q);
+            let sign = if dot(mean, q) < 0.0 { -1.0 } else { 1.0 };
+            let q = q.map(|x| sign * x);
+            for (samples, q) in samples.iter_mut().zip(q) {
+                samples[i] = q;
+            }
+            *kept = Some(std::array::from_fn(|c| mean[c] + shares[i] * (q[c] - mean[c])));
+        }
+    }
+}

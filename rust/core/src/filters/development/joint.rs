@@ -1,0 +1,207 @@
+//! One joint over the whole clip, as planes.
+
+use super::super::columns::{BLOCK, Mask};
+use crate::clip::Planes;
+use crate::parallel::Interrupt;
+use crate::rotations::quaternion::{between, dot, exp_one, log_short, product};
+use crate::simd::multiversion;
+use crate::window::Boundary;
+use crate::{Error, Real};
+
+/// Length of an average of unit quaternions below which its direction is chance: the frames turn right round within the
+/// mask.
+const SHORTEST_MEAN: f64 = 0.1;
+
+/// A joint and its reference path. All planes are padded to a multiple of [`BLOCK`] frames.
+#[derive(Debug)]
+pub(in crate::filters) struct Joint<'a> {
+    /// How many frames.
+    pub(in crate::filters) frames: usize,
+    /// The aligned unit quaternions `q`.
+    pub(in crate::filters) samples: [&'a [f64]; 4],
+    /// The unit quaternions `r`.
+    pub(in crate::filters) reference: [&'a mut [f64]; 4],
+    /// `R`, radians.
+    pub(in crate::filters) development: [&'a mut [f64]; 3],
+    /// `y`, radians.
+    pub(in crate::filters) vectors: [&'a mut [f64]; 3],
+    /// The confidence of the samples.
+    pub(in crate::filters) trust: Option<&'a [f64]>,
+}
+
+/// What a filter for numbers is applied to: the vectors of a joint, or a translation.
+///
+/// All planes are longer than there are frames: padded to a multiple of 32, so that masks need no remainders.
+#[derive(Debug)]
+pub struct Columns<'a> {
+    /// How many frames.
+    pub frames: usize,
+    /// What is filtered.
+    pub vectors: [&'a mut [f64]; 3],
+    /// Its local mean: the development of the reference path.
+    pub mean: [&'a [f64]; 3],
+    /// The samples' confidence.
+    pub trust: Option<&'a [f64]>,
+}
+
+impl Columns<'_> {
+    /// Pulls the vectors towards their local mean by as much as they are not trusted.
+    pub fn pull(&mut self) {
+        if let Some(trust) = self.trust {
+            for (vector, mean) in self.vectors.iter_mut().zip(self.mean) {
+                pull(vector, mean, trust);
+            }
+        }
+    }
+}
+
+impl<'a> Joint<'a> {
+    /// Makes the reference path with a mask, and rolls out.
+    pub(super) fn develop(
+        samples: [&'a [f64]; 4],
+        trust: Option<&'a [f64]>,
+        frames: usize,
+        mask: &Mask,
+        (planes, spare): (&'a mut Planes<f64>, &mut Planes<f64>),
+        interrupt: &Interrupt,
+    ) -> Result<Self, Error> {
+        planes.reshape(10, frames.next_multiple_of(BLOCK));
+        let [w, x, y, z, a, b, c, vectors @ ..] = planes.rows_mut::<10>(0);
+        let mut reference = [w, x, y, z];
+        for (mean, samples) in reference.iter_mut().zip(samples) {
+            mean.copy_from_slice(samples);
+        }
+        mask.means(&mut reference, trust, (frames, Boundary::Mirror), spare, interrupt)?;
+        make_unit(reference.each_mut().map(|plane| &mut **plane), samples, SHORTEST_MEAN);
+        let mut joint = Self { frames, samples, reference, development: [a, b, c], vectors, trust };
+        joint.roll_out();
+        Ok(joint)
+    }
+
+    /// Rolls the reference path out, and the samples beside it.
+    pub(in crate::filters) fn roll_out(&mut self) {
+        let reference = self.reference.each_ref().map(|plane| &**plane);
+        let mut development = self.development.each_mut().map(|plane| &mut **plane);
+        turns(reference, development.each_mut().map(|plane| &mut plane[1..]));
+        add_up(&mut development, self.frames);
+        let vectors = self.vectors.each_mut().map(|plane| &mut **plane);
+        beside(reference, self.samples, development.each_ref().map(|plane| &**plane), vectors);
+    }
+
+    /// What a filter for numbers is applied to.
+    pub(in crate::filters) fn columns(&mut self) -> Columns<'_> {
+        Columns {
+            frames: self.frames,
+            vectors: self.vectors.each_mut().map(|plane| &mut **plane),
+            mean: self.development.each_ref().map(|plane| &**plane),
+            trust: self.trust,
+        }
+    }
+
+    /// Moves the reference path to where the vectors are.
+    pub(in crate::filters) fn follow_vectors(&mut self) {
+        follow(
+            self.development.each_ref().map(|plane| &**plane),
+            self.vectors.each_ref().map(|plane| &**plane),
+            self.reference.each_mut().map(|plane| &mut **plane),
+        );
+    }
+}
+
+multiversion! {
+    /// Scales quaternions to length 1; those shorter than `shortest` become the samples.
+    fn make_unit<T: Real>(q: [&mut [T]; 4], samples: [&[T]; 4], shortest: T) {
+        let n = q[0].len();
+        let samples = samples.map(|plane| &plane[..n]);
+        let [w, x, y, z] = q.map(|plane| &mut plane[..n]);
+        for i in 0..n {
+            let mean = [w[i], x[i], y[i], z[i]];
+            let length = dot(mean, mean).sqrt();
+            let clear = length >= shortest;
+            let one = std::array::from_fn::<T, 4, _>(|c| if clear { mean[c] / length } else { samples[c][i] });
+            w[i] = one[0];
+            x[i] = one[1];
+            y[i] = one[2];
+            z[i] = one[3];
+        }
+    }
+}
+
+multiversion! {
+    /// Rotation vectors from each frame to the next, the shorter way.
+    fn turns<T: Real>(q: [&[T]; 4], out: [&mut [T]; 3]) {
+        let n = out[0].len();
+        let here = q.map(|plane| &plane[..n]);
+        let next = q.map(|plane| &plane[1..=n]);
+        let [x, y, z] = out.map(|plane| &mut plane[..n]);
+        for i in 0..n {
+            let a = [here[0][i], here[1][i], here[2][i], here[3][i]];
+            let b = [next[0][i], next[1][i], next[2][i], next[3][i]];
+            let turn = log_short(between(a, b));
+            x[i] = T::TWO * turn[0];
+            y[i] = T::TWO * turn[1];
+            z[i] = T::TWO * turn[2];
+        }
+    }
+}
+
+/// Sums of the turns from frame to frame, in place; the first frame has none.
+fn add_up(turns: &mut [&mut [f64]; 3], frames: usize) {
+    let [x, y, z] = turns.each_mut().map(|plane| &mut plane[..frames]);
+    let mut sum = [0.0; 3];
+    x[0] = 0.0;
+    y[0] = 0.0;
+    z[0] = 0.0;
+    for i in 1..frames {
+        sum = [sum[0] + x[i], sum[1] + y[i], sum[2] + z[i]];
+        x[i] = sum[0];
+        y[i] = sum[1];
+        z[i] = sum[2];
+    }
+}
+
+multiversion! {
+    /// The samples as vectors beside the development of the reference path.
+    fn beside<T: Real>(reference: [&[T]; 4], samples: [&[T]; 4], development: [&[T]; 3], out: [&mut [T]; 3]) {
+        let n = out[0].len();
+        let (reference, samples) = (reference.map(|plane| &plane[..n]), samples.map(|plane| &plane[..n]));
+        let development = development.map(|plane| &plane[..n]);
+        let [x, y, z] = out.map(|plane| &mut plane[..n]);
+        for i in 0..n {
+            let a = [reference[0][i], reference[1][i], reference[2][i], reference[3][i]];
+            let b = [samples[0][i], samples[1][i], samples[2][i], samples[3][i]];
+            let way = log_short(between(a, b));
+            x[i] = development[0][i] + T::TWO * way[0];
+            y[i] = development[1][i] + T::TWO * way[1];
+            z[i] = development[2][i] + T::TWO * way[2];
+        }
+    }
+}
+
+multiversion! {
+    /// Moves a path by half of what its vectors differ from its development.
+    fn follow<T: Real>(development: [&[T]; 3], vectors: [&[T]; 3], path: [&mut [T]; 4]) {
+        let n = path[0].len();
+        let (development, vectors) = (development.map(|plane| &plane[..n]), vectors.map(|plane| &plane[..n]));
+        let [w, x, y, z] = path.map(|plane| &mut plane[..n]);
+        for i in 0..n {
+            let half = std::array::from_fn::<T, 3, _>(|c| (vectors[c][i] - development[c][i]) * T::HALF);
+            let one = product([w[i], x[i], y[i], z[i]], exp_one(half));
+            w[i] = one[0];
+            x[i] = one[1];
+            y[i] = one[2];
+            z[i] = one[3];
+        }
+    }
+}
+
+multiversion! {
+    /// Pulls numbers towards their means by as much as they are not trusted.
+    fn pull<T: Real>(numbers: &mut [T], means: &[T], trust: &[T]) {
+        let n = numbers.len();
+        let (means, trust) = (&means[..n], &trust[..n]);
+        for i in 0..n {
+            numbers[i] = means[i] + trust[i] * (numbers[i] - means[i]);
+        }
+    }
+}
