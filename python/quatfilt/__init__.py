@@ -14,7 +14,9 @@ from quatfilt.filters.bilateral import bilateral
 from quatfilt.filters.butterworth import butterworth
 from quatfilt.filters.gaps import fill_gaps
 from quatfilt.filters.gaussian import gaussian
+from quatfilt.filters.kalman import kalman
 from quatfilt.filters.nonlocal_pose_means import nonlocal_pose_means
+from quatfilt.filters.one_euro import one_euro
 from quatfilt.filters.orientation_filter import orientation_filter
 from quatfilt.filters.savgol import savgol
 from quatfilt.filters.stream.bilateral import BilateralStream
@@ -62,6 +64,7 @@ __all__ = [
     "geodesic_distance",
     "get_backend",
     "get_num_threads",
+    "kalman",
     "log",
     "mean",
     "metrics",
@@ -69,6 +72,7 @@ __all__ = [
     "noise_level",
     "nonlocal_pose_means",
     "normalize",
+    "one_euro",
     "orientation_filter",
     "read_motion",
     "report",

@@ -24,6 +24,10 @@ __all__ = [
     "geodesic_distance",
     "get_num_threads",
     "is_debug_build",
+    "kalman",
+    "kalman_process_noise",
+    "kalman_vectors",
+    "kalman_vectors_ratio",
     "log",
     "mean",
     "multiply",
@@ -31,6 +35,7 @@ __all__ = [
     "nonlocal_pose_means",
     "nonlocal_pose_means_stream",
     "normalize",
+    "one_euro",
     "orientation_filter",
     "read_amc",
     "read_asf",
@@ -99,6 +104,26 @@ def gaussian(
     /,
 ) -> tuple[Array, Array | None]: ...
 
+# filters/kalman
+def kalman(
+    q: Array,
+    confidence: Array | None,
+    process_noise: NDArray[np.float64],
+    measurement_noise: NDArray[np.float64],
+    lookahead: int,
+    /,
+) -> Array: ...
+def kalman_process_noise(
+    q: Array,
+    confidence: Array | None,
+    measurement_noise: NDArray[np.float64],
+    block: int,
+    lookahead: int,
+    /,
+) -> NDArray[np.float64]: ...
+def kalman_vectors(x: Array, ratio: NDArray[np.float64], lookahead: int, /) -> Array: ...
+def kalman_vectors_ratio(x: Array, block: int, lookahead: int, /) -> NDArray[np.float64]: ...
+
 # filters/nonlocal_pose_means
 def nonlocal_pose_means(
     q: Array,
@@ -113,6 +138,17 @@ def nonlocal_pose_means(
     chart: str,
     boundary: str,
     lookahead: int,
+    /,
+) -> tuple[Array, Array | None]: ...
+
+# filters/one_euro
+def one_euro(
+    q: Array,
+    translation: Array | None,
+    confidence: Array | None,
+    min_cutoff: NDArray[np.float64],
+    beta: NDArray[np.float64],
+    derivative_cutoff: NDArray[np.float64],
     /,
 ) -> tuple[Array, Array | None]: ...
 

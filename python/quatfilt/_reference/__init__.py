@@ -14,7 +14,11 @@ from quatfilt._reference.filters.butterworth import butterworth
 from quatfilt._reference.filters.development import develop, undevelop
 from quatfilt._reference.filters.gaps import fill_gaps
 from quatfilt._reference.filters.gaussian import gaussian
+from quatfilt._reference.filters.kalman.ratio import kalman_process_noise, kalman_vectors_ratio
+from quatfilt._reference.filters.kalman.rotations import kalman
+from quatfilt._reference.filters.kalman.vectors import kalman_vectors
 from quatfilt._reference.filters.nonlocal_pose_means import nonlocal_pose_means
+from quatfilt._reference.filters.one_euro import one_euro
 from quatfilt._reference.filters.orientation_filter import orientation_filter
 from quatfilt._reference.filters.savgol import savgol, savgol_derivative
 from quatfilt._reference.filters.weighted_moving_mean import weighted_moving_mean
@@ -48,12 +52,17 @@ __all__ = [
     "from_euler",
     "gaussian",
     "geodesic_distance",
+    "kalman",
+    "kalman_process_noise",
+    "kalman_vectors",
+    "kalman_vectors_ratio",
     "log",
     "mean",
     "multiply",
     "noise_level",
     "nonlocal_pose_means",
     "normalize",
+    "one_euro",
     "orientation_filter",
     "savgol",
     "savgol_derivative",

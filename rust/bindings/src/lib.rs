@@ -24,7 +24,11 @@ mod _core {
     #[pymodule_export]
     use super::filters::gaussian::gaussian;
     #[pymodule_export]
+    use super::filters::kalman::{filter, kalman_process_noise, kalman_vectors, kalman_vectors_ratio};
+    #[pymodule_export]
     use super::filters::nonlocal_pose_means::nonlocal_pose_means;
+    #[pymodule_export]
+    use super::filters::one_euro::one_euro;
     #[pymodule_export]
     use super::filters::orientation_filter::orientation_filter;
     #[pymodule_export]

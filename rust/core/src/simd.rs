@@ -91,6 +91,34 @@ impl Level {
 ///
 /// Everything that the body calls must be `#[inline(always)]`, or it is compiled without the level's features.
 macro_rules! multiversion {
+    ($(#[$meta:meta])* $vis:vis fn $name:ident($($arg:ident: $ty:ty),* $(,)?) $(-> $ret:ty)? $body:block) => {
+        $(#[$meta])*
+        $vis fn $name($($arg: $ty),*) $(-> $ret)? {
+            #[inline(always)]
+            fn body($($arg: $ty),*) $(-> $ret)? $body
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx2")]
+            fn avx2($($arg: $ty),*) $(-> $ret)? {
+                body($($arg),*)
+            }
+            #[cfg(target_arch = "x86_64")]
+            #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+            fn avx512($($arg: $ty),*) $(-> $ret)? {
+                body($($arg),*)
+            }
+            match $crate::simd::Level::current() {
+                #[cfg(target_arch = "x86_64")]
+                #[allow(unsafe_code, reason = "the processor was asked")]
+                // SAFETY: `Level::current` never exceeds what the processor reports.
+                $crate::simd::Level::Avx512 => unsafe { avx512($($arg),*) },
+                #[cfg(target_arch = "x86_64")]
+                #[allow(unsafe_code, reason = "the processor was asked")]
+                // SAFETY: `Level::current` never exceeds what the processor reports.
+                $crate::simd::Level::Avx2 => unsafe { avx2($($arg),*) },
+                _ => body($($arg),*),
+            }
+        }
+    };
     ($(#[$meta:meta])* $vis:vis fn $name:ident<$T:ident: $bound:path $(, const $N:ident: $K:ty)*>($($arg:ident: $ty:ty),* $(,)?) $(-> $ret:ty)? $body:block) => {
         $(#[$meta])*
         $vis fn $name<$T: $bound $(, const $N: $K)*>($($arg: $ty),*) $(-> $ret)? {

@@ -1,0 +1,346 @@
+//! The filter forward in time and the smoother backward, on eight joints side by side.
+//!
+//! A record holds what is known of each of them at one frame. It starts as the sample, becomes the state of the filter,
+//! and its rotation in the end the smoothed one. All arithmetic is in float64.
+
+use super::covariance::Covariance;
+use crate::filters::lanes::{LANES, Lane, of_lane, scaled, select, set_lane};
+use crate::rotations::quaternion::{between, conjugate_one, exp_one, log_short, product, rotate};
+use crate::simd::multiversion;
+
+/// Radians: deviation of a forecast beyond which it is not followed. The pose may then be anywhere, and a forecast that
+/// goes on turning would be met from the wrong side by the next sample.
+const FARTHEST_FORECAST: f64 = 0.2;
+
+/// Radians per frame: deviation of the velocity before anything is known of it. Faster turns cannot be seen.
+const FASTEST: f64 = std::f64::consts::PI;
+
+/// So many measurements make the first velocity. A forecast before tells nothing.
+const KNOWN: f64 = 2.0;
+
+/// Variances of each joint: of the acceleration within a frame, and of a measurement.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Variances {
+    pub(super) process: Lane,
+    pub(super) measurement: Lane,
+}
+
+/// One frame of [`LANES`] joints.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Record {
+    /// The sample; later the pose, or where the forecast was left; in the end the smoothed pose.
+    pub(super) rotation: [Lane; 4],
+    /// Confidence of the sample.
+    pub(super) trust: Lane,
+    /// Radians per frame, in the frame of the joint.
+    velocity: [Lane; 3],
+    /// For how many frames the velocity has gone on since the forecast was left.
+    beyond: Lane,
+    covariance: [Lane; 4],
+}
+
+impl Record {
+    /// A sample of each joint that stands still at the identity, with confidence.
+    pub(super) const STILL: Self = Self {
+        rotation: [[1.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]],
+        trust: [1.0; LANES],
+        velocity: [[0.0; LANES]; 3],
+        beyond: [0.0; LANES],
+        covariance: [[0.0; LANES]; 4],
+    };
+
+    /// The same sample in all lanes.
+    pub(super) fn alike(sample: [f64; 4], trust: f64) -> Self {
+        Self { rotation: sample.map(|x| [x; LANES]), trust: [trust; LANES], ..Self::STILL }
+    }
+
+    #[inline(always)]
+    pub(super) fn rotation(&self, lane: usize) -> [f64; 4] {
+        of_lane(&self.rotation, lane)
+    }
+
+    #[inline(always)]
+    pub(super) fn covariance(&self, lane: usize) -> Covariance {
+        Covariance::of_array(of_lane(&self.covariance, lane))
+    }
+
+    #[inline(always)]
+    fn state(&self, lane: usize) -> State {
+        State {
+            rotation: self.rotation(lane),
+            velocity: of_lane(&self.velocity, lane),
+            beyond: self.beyond[lane],
+            covariance: self.covariance(lane),
+        }
+    }
+
+    #[inline(always)]
+    fn set_state(&mut self, lane: usize, state: State) {
+        set_lane(&mut self.rotation, lane, state.rotation);
+        set_lane(&mut self.velocity, lane, state.velocity);
+        self.beyond[lane] = state.beyond;
+        set_lane(&mut self.covariance, lane, state.covariance.to_array());
+    }
+}
+
+/// What is known of one joint at one frame.
+#[derive(Debug, Clone, Copy)]
+struct State {
+    rotation: [f64; 4],
+    velocity: [f64; 3],
+    beyond: f64,
+    covariance: Covariance,
+}
+
+/// What is expected of one joint one frame later.
+struct Prediction {
+    /// The rotation from which ways are measured.
+    origin: [f64; 4],
+    /// The expected way from there; zero unless the forecast is left.
+    way: [f64; 3],
+    /// Whether the forecast is left.
+    left: bool,
+    /// Half of the turn of one frame.
+    half_turn: [f64; 4],
+    covariance: Covariance,
+}
+
+impl State {
+    /// What is known after one sample: the pose, and nothing of the velocity.
+    #[inline(always)]
+    fn first(sample: [f64; 4], trust: f64, variance: f64) -> Self {
+        let covariance = Covariance::first(variance / trust, FASTEST * FASTEST);
+        Self { rotation: sample, velocity: [0.0; 3], beyond: 0.0, covariance }
+    }
+
+    /// The one or the other, without a branch.
+    #[inline(always)]
+    fn select(condition: bool, yes: Self, no: Self) -> Self {
+        let covariance = select(condition, yes.covariance.to_array(), no.covariance.to_array());
+        Self {
+            rotation: select(condition, yes.rotation, no.rotation),
+            velocity: select(condition, yes.velocity, no.velocity),
+            beyond: select(condition, [yes.beyond], [no.beyond])[0],
+            covariance: Covariance::of_array(covariance),
+        }
+    }
+
+    /// The way from the rotation to where the pose would be if the forecast were followed.
+    #[inline(always)]
+    fn forecast(&self) -> [f64; 3] {
+        scaled(self.velocity, self.beyond)
+    }
+
+    #[inline(always)]
+    fn predict(&self, process: f64) -> Prediction {
+        let covariance = self.covariance.predicted(process);
+        let left = covariance.pose > FARTHEST_FORECAST * FARTHEST_FORECAST;
+        let half_turn = exp_one(scaled(self.velocity, 0.25));
+        let moved = product(self.rotation, product(half_turn, half_turn));
+        let frames = if left { self.beyond + 1.0 } else { 0.0 };
+        Prediction {
+            origin: select(left, self.rotation, moved),
+            way: scaled(self.velocity, frames),
+            left,
+            half_turn,
+            covariance,
+        }
+    }
+
+    /// The state one frame later, and the square of the innovation, the way from the expected pose to the sample.
+    #[inline(always)]
+    fn step(&self, sample: [f64; 4], trust: f64, process: f64, variance: f64) -> (Self, f64) {
+        let expected = self.predict(process);
+        let innovation = minus(way_between(expected.origin, sample), expected.way);
+        let [gain, velocity_gain] = expected.covariance.gains(variance, trust);
+        let corrected = plus(expected.way, gain, innovation);
+        let half = exp_one(scaled(corrected, 0.25));
+        let moved = product(expected.origin, product(half, half));
+        let velocity = rotate(conjugate_one(half), plus(self.velocity, velocity_gain, innovation));
+        let measured = trust > 0.0;
+        let after = Self {
+            rotation: select(measured, moved, expected.origin),
+            velocity: select(measured, velocity, self.velocity),
+            beyond: if measured | !expected.left { 0.0 } else { self.beyond + 1.0 },
+            covariance: expected.covariance.updated(variance, trust),
+        };
+        (after, square(innovation))
+    }
+}
+
+/// What is known better of one joint at a frame by what came later.
+#[derive(Debug, Clone, Copy)]
+struct Better {
+    /// The smoothed rotation.
+    rotation: [f64; 4],
+    /// The way to it from the rotation of the filter's state.
+    way: [f64; 3],
+    /// Half of its turn.
+    half: [f64; 4],
+    /// The smoothed velocity in the tangent space at the rotation of the filter's state.
+    velocity: [f64; 3],
+    /// Whether a sample came later.
+    heard: bool,
+}
+
+impl Better {
+    /// What this says of the frame before, in which the filter knew `state`; `measured` tells whether there is a sample here.
+    #[inline(always)]
+    fn back(&self, measured: bool, state: &State, process: f64) -> Self {
+        let expected = state.predict(process);
+        // As seen from the origin of the prediction, which a measurement has left behind.
+        let seen = way_between(expected.origin, self.rotation);
+        let there = rotate(conjugate_one(self.half), self.velocity);
+        let carried = rotate(exp_one(scaled(seen, 0.25)), there);
+        let velocity = select(measured, carried, self.velocity);
+        let way = select(measured, seen, self.way);
+        let heard = self.heard | measured;
+        // What it differs by from what was expected, seen from here; nothing where no sample came since.
+        let surprise = select(heard, minus(way, expected.way), [0.0; 3]);
+        let change = select(heard, minus(velocity, state.velocity), [0.0; 3]);
+        let surprise = select(expected.left, surprise, rotate(expected.half_turn, surprise));
+        let change = select(expected.left, change, rotate(expected.half_turn, change));
+        let [c11, c12, c21, c22] = state.covariance.smoother_gains(process);
+        let way = plus(plus(state.forecast(), c11, surprise), c12, change);
+        let velocity = plus(plus(state.velocity, c21, surprise), c22, change);
+        let half = exp_one(scaled(way, 0.25));
+        // Where no later sample says where a forecast leads, it is not followed.
+        let moved = product(state.rotation, product(half, half));
+        Self { rotation: select(heard, moved, state.rotation), way, half, velocity, heard }
+    }
+}
+
+/// What is known better of [`LANES`] joints at a frame by what came later.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Later {
+    pub(super) rotation: [Lane; 4],
+    way: [Lane; 3],
+    half: [Lane; 4],
+    velocity: [Lane; 3],
+    heard: [bool; LANES],
+    trust: Lane,
+}
+
+impl Later {
+    /// Nothing came later than the frame of this record.
+    pub(super) fn nothing(record: &Record) -> Self {
+        Self {
+            rotation: record.rotation,
+            way: std::array::from_fn(|c| {
+                std::array::from_fn(|i| record.velocity[c][i] * record.beyond[i])
+            }),
+            half: Record::STILL.rotation,
+            velocity: record.velocity,
+            heard: [false; LANES],
+            trust: record.trust,
+        }
+    }
+
+    #[inline(always)]
+    fn of_lane(&self, i: usize) -> Better {
+        Better {
+            rotation: of_lane(&self.rotation, i),
+            way: of_lane(&self.way, i),
+            half: of_lane(&self.half, i),
+            velocity: of_lane(&self.velocity, i),
+            heard: self.heard[i],
+        }
+    }
+
+    #[inline(always)]
+    fn set_lane(&mut self, i: usize, better: Better) {
+        set_lane(&mut self.rotation, i, better.rotation);
+        set_lane(&mut self.way, i, better.way);
+        set_lane(&mut self.half, i, better.half);
+        set_lane(&mut self.velocity, i, better.velocity);
+        self.heard[i] = better.heard;
+    }
+}
+
+/// How the forecasts of the filter fared, for each joint.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Forecasts {
+    /// How many samples had confidence.
+    pub(super) measured: Lane,
+    /// Squares of the innovations, each times its confidence.
+    pub(super) errors: Lane,
+    /// Sum of these confidences.
+    pub(super) weights: Lane,
+}
+
+/// Starts the filter with the first of the records, which holds a sample.
+pub(super) fn begin(record: &mut Record, variances: &Variances, forecasts: &mut Forecasts) {
+    for i in 0..LANES {
+        let measured = record.trust[i] > 0.0;
+        let trust = if measured { record.trust[i] } else { 1.0 };
+        record.set_state(i, State::first(record.rotation(i), trust, variances.measurement[i]));
+        forecasts.measured[i] = if measured { 1.0 } else { 0.0 };
+    }
+}
+
+multiversion! {
+    /// Filters forward: `records[0]` holds a state, the others samples, which become states.
+    pub(super) fn forward(records: &mut [Record], variances: &Variances, forecasts: &mut Forecasts) {
+        let Some((first, rest)) = records.split_first_mut() else { return };
+        let mut before = *first;
+        for record in rest {
+            let mut after = *record;
+            for i in 0..LANES {
+                let (sample, trust) = (after.rotation(i), after.trust[i]);
+                let (process, variance) = (variances.process[i], variances.measurement[i]);
+                let (state, error) = before.state(i).step(sample, trust, process, variance);
+                let measured = trust > 0.0;
+                let begins = measured & (forecasts.measured[i] == 0.0);
+                let first = State::first(sample, if measured { trust } else { 1.0 }, variance);
+                after.set_state(i, State::select(begins, first, state));
+                let judging = if forecasts.measured[i] >= KNOWN { trust } else { 0.0 };
+                forecasts.errors[i] += judging * error;
+                forecasts.weights[i] += judging;
+                forecasts.measured[i] += if measured { 1.0 } else { 0.0 };
+            }
+            *record = after;
+            before = after;
+        }
+    }
+}
+
+multiversion! {
+    /// Smooths backward: the records hold states, `later` speaks of the frame after the last of them, and of the first in
+    /// the end. With `keep` the rotations become the smoothed ones.
+    pub(super) fn backward(records: &mut [Record], process: &Lane, later: &mut Later, keep: bool) {
+        let mut now = *later;
+        for record in records.iter_mut().rev() {
+            let state = *record;
+            for i in 0..LANES {
+                now.set_lane(i, now.of_lane(i).back(now.trust[i] > 0.0, &state.state(i), process[i]));
+            }
+            now.trust = state.trust;
+            if keep {
+                record.rotation = now.rotation;
+            }
+        }
+        *later = now;
+    }
+}
+
+/// The shorter way from one rotation to another, a rotation vector in the frame of its start.
+#[inline(always)]
+pub(super) fn way_between(start: [f64; 4], end: [f64; 4]) -> [f64; 3] {
+    scaled(log_short(between(start, end)), 2.0)
+}
+
+#[inline(always)]
+pub(super) fn square(v: [f64; 3]) -> f64 {
+    v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
+}
+
+#[inline(always)]
+fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// `a + factor·b`.
+#[inline(always)]
+fn plus(a: [f64; 3], factor: f64, b: [f64; 3]) -> [f64; 3] {
+    [a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]]
+}
