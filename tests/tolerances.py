@@ -17,6 +17,9 @@ FLOAT64 = 1e-12
 FLOAT32 = 1e-5
 """Filters in float32: an ulp near 1 is 6e-8; amplified as in `FLOAT64`."""
 
+RATIO = 1e-6
+"""Relative, of automatic process noises: they lie at the flat bottom of a parabola through nearly equal numbers."""
+
 WHITE_NOISE_LEVEL = 0.03
 """Relative bias of the estimated noise level for 30 frames or more: at most 2.4 % was measured."""
 

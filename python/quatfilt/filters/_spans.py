@@ -60,7 +60,8 @@ class Clip:
         """Run a filter over each span, ``(rotations, confidence, span) -> rotations``, and finish."""
         if self.unchanged:
             return self.finish(self.rotations.copy())
-        if len(self.spans) == 1 and len(self.spans[0].joints) == self.rotations.shape[1]:
+        frames, joints, _ = self.rotations.shape
+        if [(span.frames, len(span.joints)) for span in self.spans] == [(slice(0, frames), joints)]:
             return self.finish(run(self.rotations, self.confidence, self.spans[0]))
         result = np.full_like(self.rotations, np.nan)
         for span in self.spans:

@@ -192,7 +192,7 @@ pub fn vectors_ratio<T: Real>(
     check_length("values", frames * columns, values.len())?;
     let nanoseconds = values.len() * CANDIDATES.len() * super::NANOSECONDS;
     parallel::map((0..columns).collect(), nanoseconds, |_, column: usize| {
-        let values: Vec<f64> = values[column..].iter().step_by(columns).map(|x| x.to_f64()).collect();
+        let values: Vec<f64> = values.iter().skip(column).step_by(columns).map(|x| x.to_f64()).collect();
         let mut scores = Scores::default();
         for (k, ratio) in CANDIDATES.into_iter().enumerate() {
             interrupt.check()?;
