@@ -11,7 +11,9 @@ from quatfilt.filters import (
     bilateral,
     butterworth,
     gaussian,
+    kalman,
     nonlocal_pose_means,
+    one_euro,
     orientation_filter,
     savgol,
     wavelet,
@@ -62,9 +64,13 @@ FILTERS: Final[dict[str, Method]] = {
     "bilateral": Method(bilateral.bilateral, bilateral.with_translation, angles=("sigma_angle",)),
     "butterworth": Method(butterworth.butterworth, butterworth.with_translation),
     "gaussian": Method(gaussian.gaussian, gaussian.with_translation),
+    "kalman": Method(
+        kalman.kalman, kalman.with_translation, angles=("process_noise", "measurement_noise")
+    ),
     "nonlocal_pose_means": Method(
         nonlocal_pose_means.nonlocal_pose_means, nonlocal_pose_means.with_translation, angles=("bandwidth",)
     ),
+    "one_euro": Method(one_euro.one_euro, one_euro.with_translation),
     "orientation_filter": Method(orientation_filter.orientation_filter, orientation_filter.with_translation),
     "savgol": Method(savgol.savgol, savgol.with_translation, hidden=("deriv",)),
     "wavelet": Method(wavelet.wavelet, wavelet.with_translation, angles=("threshold",)),

@@ -15,7 +15,9 @@ FILTERS = {
     "butterworth": lambda q, *more, cutoff=0.1, **options: qf.butterworth(q, *more, cutoff=cutoff, **options),
     "denoise": qf.denoise,
     "gaussian": lambda q, *more, sigma=2.0, **options: qf.gaussian(q, *more, sigma=sigma, **options),
+    "kalman": qf.kalman,
     "nonlocal_pose_means": qf.nonlocal_pose_means,
+    "one_euro": qf.one_euro,
     "orientation_filter": lambda q, *more, **options: qf.orientation_filter(
         q, [1, 2, 4, 2, 1], *more, **options
     ),
@@ -32,7 +34,9 @@ OPTIONS = {
     "butterworth": {"cutoff": None, **qf.butterworth.__kwdefaults__},
     "denoise": qf.nonlocal_pose_means.__kwdefaults__,
     "gaussian": {"sigma": None, **qf.gaussian.__kwdefaults__},
+    "kalman": qf.kalman.__kwdefaults__,
     "nonlocal_pose_means": qf.nonlocal_pose_means.__kwdefaults__,
+    "one_euro": qf.one_euro.__kwdefaults__,
     "orientation_filter": qf.orientation_filter.__kwdefaults__,
     "savgol": {"window_length": None, **qf.savgol.__kwdefaults__},
     "wavelet": qf.wavelet.__kwdefaults__,
@@ -330,6 +334,19 @@ def test_a_clip_without_any_sample(name, kind):
     assert np.isnan(result).all()
 
 
+@pytest.mark.parametrize("end", ["start", "end"])
+@every_filter
+def test_a_gap_at_one_end_that_stays_does_not_spread(name, end):
+    """All joints at once: what is left is one span, and not the whole clip."""
+    q = clip()
+    gap, rest = (slice(0, 20), slice(20, None)) if end == "start" else (slice(70, None), slice(0, 70))
+    broken = q.copy()
+    broken[gap] = np.nan
+    result = FILTERS[name](broken, max_gap=5)
+    assert np.isnan(result[gap]).all()
+    assert clips.angles(result[rest], q[rest]).max() < 1
+
+
 # ---- windows
 
 
@@ -431,6 +448,29 @@ WRONG_OPTIONS = [
     ("bandwidth", [[0.1] * 3], ValueError, "expected a number or one per joint, shape (3,), got (1, 3)"),
     ("bandwidth", [0.1, -0.1, 0.1], ValueError, f"[1]{{}}{POSITIVE}, got -0.1"),
     ("bandwidth", [0.1, 0.1, np.nan], ValueError, f"[2]{{}}{POSITIVE}, got nan"),
+    ("process_noise", -1, ValueError, f"{NOT_NEGATIVE}, got -1"),
+    ("process_noise", math.inf, ValueError, f"{NOT_NEGATIVE}, got inf"),
+    ("process_noise", "much", ValueError, "expected one of 'auto', got 'much'"),
+    ("process_noise", None, TypeError, "expected real numbers, got dtype object"),
+    ("process_noise", [0.1, 0.1], ValueError, "expected a number or one per joint, shape (3,), got (2,)"),
+    ("process_noise", [0.1, -0.1, 0.1], ValueError, f"[1]{{}}{NOT_NEGATIVE}, got -0.1"),
+    ("measurement_noise", 0, ValueError, f"{POSITIVE}, got 0"),
+    ("measurement_noise", math.nan, ValueError, f"{POSITIVE}, got nan"),
+    ("measurement_noise", True, TypeError, f"{POSITIVE}, got bool"),
+    ("measurement_noise", "little", ValueError, "expected one of 'auto', got 'little'"),
+    ("measurement_noise", [0.1, 0, 0.1], ValueError, f"[1]{{}}{POSITIVE}, got 0.0"),
+    ("smooth", 1, TypeError, "expected True or False, got int"),
+    ("smooth", None, TypeError, "expected True or False, got NoneType"),
+    ("min_cutoff", 0, ValueError, f"{POSITIVE}, got 0"),
+    ("min_cutoff", math.nan, ValueError, f"{POSITIVE}, got nan"),
+    ("min_cutoff", "auto", TypeError, f"{POSITIVE}, got str"),
+    ("min_cutoff", [1.0, 1.0], ValueError, "expected a number or one per joint, shape (3,), got (2,)"),
+    ("min_cutoff", [1.0, -1.0, 1.0], ValueError, f"[1]{{}}{POSITIVE}, got -1.0"),
+    ("beta", -0.5, ValueError, f"{NOT_NEGATIVE}, got -0.5"),
+    ("beta", math.inf, ValueError, f"{NOT_NEGATIVE}, got inf"),
+    ("beta", [0.0, math.nan, 0.0], ValueError, f"[1]{{}}{NOT_NEGATIVE}, got nan"),
+    ("derivative_cutoff", 0, ValueError, f"{POSITIVE}, got 0"),
+    ("derivative_cutoff", None, TypeError, "expected real numbers, got dtype object"),
     ("distance", "max", ValueError, "expected one of 'mean', 'sum', got 'max'"),
     ("distance", None, ValueError, "expected one of 'mean', 'sum', got None"),
     ("weights", "joints", ValueError, "expected one of 'pose', 'joint', got 'joints'"),
@@ -478,6 +518,9 @@ def test_wrong_options(name, option, value, kind, message):
             ("search_radius", 0),
             ("bandwidth", -1),
             ("sigma_angle", -1),
+            ("process_noise", -1),
+            ("measurement_noise", 0),
+            ("min_cutoff", 0),
             ("iterations", 0),
             ("gaps", "drop"),
             ("fps", 0),
@@ -539,6 +582,60 @@ def test_numbers_of_numpy_and_one_bandwidth_per_joint():
     ]:
         result = qf.nonlocal_pose_means(q, search_radius=radius, bandwidth=bandwidth)
         np.testing.assert_array_equal(result, expected)
+
+
+@pytest.mark.parametrize("frames", [0, 1, FRAMES])
+def test_a_forward_filter_has_no_lookahead(frames):
+    message = refused(ValueError, qf.kalman, clip()[:frames], smooth=False, lookahead=3)
+    assert message == "lookahead: expected None with smooth=False, got 3"
+
+
+def test_the_smoother_without_a_lookahead_is_the_forward_filter():
+    q = clip()
+    np.testing.assert_array_equal(qf.kalman(q, lookahead=0), qf.kalman(q, smooth=False))
+    np.testing.assert_array_equal(qf.kalman(q, lookahead=FRAMES), qf.kalman(q))
+
+
+@pytest.mark.parametrize(
+    ("name", "options"),
+    [
+        ("kalman", {"process_noise": [0.0, 0.1, 1e300], "measurement_noise": [0.1, 1e-300, 1e300]}),
+        ("one_euro", {"min_cutoff": [0.1, math.inf, 1e-3], "beta": [0.0, 1.0, 1e300]}),
+        ("one_euro", {"derivative_cutoff": [0.1, math.inf, 1e-300], "beta": 0.1, "min_cutoff": 0.01}),
+    ],
+)
+def test_one_strength_per_joint(name, options):
+    q = clip()
+    result = FILTERS[name](q, **options)
+    assert np.isfinite(result).all()
+    for joint in range(3):
+        own = {option: np.broadcast_to(value, 3)[joint] for option, value in options.items()}
+        np.testing.assert_array_equal(result[:, joint], FILTERS[name](q[:, joint], **own))
+
+
+@pytest.mark.parametrize("smooth", [True, False])
+def test_automatic_noises_are_those_of_each_joint(smooth):
+    q = clips.noisy(np.random.default_rng(2), clip(), np.array([0.01, 0.03, 0.1])[:, None])
+    result = qf.kalman(q, smooth=smooth)
+    for joint in range(3):
+        np.testing.assert_array_equal(result[:, joint], qf.kalman(q[:, joint], smooth=smooth))
+
+
+def test_times_are_seconds_with_a_frame_rate():
+    q = clip()
+    rate = 120.0
+    np.testing.assert_allclose(
+        qf.kalman(q, fps=rate, process_noise=0.01 * rate**1.5, measurement_noise=0.03),
+        qf.kalman(q, process_noise=0.01, measurement_noise=0.03),
+        rtol=0,
+        atol=tolerances.FLOAT64,
+    )
+    np.testing.assert_allclose(
+        qf.one_euro(q, fps=rate, min_cutoff=0.02 * rate, beta=0.1, derivative_cutoff=0.05 * rate),
+        qf.one_euro(q, min_cutoff=0.02, beta=0.1, derivative_cutoff=0.05),
+        rtol=0,
+        atol=tolerances.FLOAT64,
+    )
 
 
 def test_confidence_per_frame_and_without_a_number():
