@@ -4,7 +4,7 @@ use quatfilt_benches::clips;
 use quatfilt_benches::settings;
 use quatfilt_benches::timer::Timer;
 use quatfilt_core::filters::bilateral::{Bilateral, Kernel};
-use quatfilt_core::filters::gaps;
+use quatfilt_core::filters::gaps::{self, Method};
 use quatfilt_core::filters::nonlocal_pose_means::{Chart, NonlocalPoseMeans, Weights};
 use quatfilt_core::filters::orientation_filter::OrientationFilter;
 use quatfilt_core::parallel::Interrupt;
@@ -96,7 +96,10 @@ fn fill_gaps<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Err
     let clip = ClipView::new(&q, frames, joints)?;
     let mut out = vec![T::ZERO; q.len()];
     let mut filled = vec![false; frames * joints];
-    timer.threads::<T, _, _>("filters/fill_gaps", size, || {
-        gaps::fill_gaps(clip, None, ClipMut::new(&mut out, frames, joints)?, &mut filled)
-    })
+    for (name, method) in [("filters/fill_gaps", Method::Slerp), ("filters/fill_gaps/squad", Method::Squad)] {
+        timer.threads::<T, _, _>(name, size, || {
+            gaps::fill_gaps(clip, None, method, ClipMut::new(&mut out, frames, joints)?, &mut filled)
+        })?;
+    }
+    Ok(())
 }

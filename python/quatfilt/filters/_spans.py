@@ -94,7 +94,7 @@ def prepare(
         raise ValueError(f"rotations: expected no missing samples with gaps='raise', got {count}")
     if count and frames > 1:
         missing = ~np.isfinite(rotations).all(axis=-1) | (rotations == 0).all(axis=-1)
-        rotations, _ = ops().fill_gaps(rotations, longest)
+        rotations, _ = ops().fill_gaps(rotations, longest, "slerp")
         trust = np.where(missing, 0, 1 if trust is None else trust).astype(rotations.dtype)
         spans = _spans(np.isnan(rotations[..., 0]))
     return Clip(rotations, trust, missing, spans, policy, array.shape, scalar_first)
