@@ -4,6 +4,7 @@ use quatfilt_benches::clips;
 use quatfilt_benches::settings;
 use quatfilt_benches::timer::Timer;
 use quatfilt_core::filters::bilateral::{Bilateral, Kernel};
+use quatfilt_core::filters::despike::Despike;
 use quatfilt_core::filters::gaps::{self, Method};
 use quatfilt_core::filters::nonlocal_pose_means::{Chart, NonlocalPoseMeans, Weights};
 use quatfilt_core::filters::orientation_filter::OrientationFilter;
@@ -24,6 +25,8 @@ fn main() -> Result<(), Error> {
         orientation_filters::<f64>(&mut timer, size)?;
         fill_gaps::<f32>(&mut timer, size)?;
         fill_gaps::<f64>(&mut timer, size)?;
+        despike::<f32>(&mut timer, size)?;
+        despike::<f64>(&mut timer, size)?;
     }
     Ok(())
 }
@@ -88,6 +91,30 @@ fn orientation_filters<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Resu
     timer.threads::<T, _, _>("filters/bilateral", size, || {
         filter.filter(clip, None, ClipMut::new(&mut out, frames, joints)?, &interrupt)
     })
+}
+
+/// Noise alone, and with one spike in a hundred samples.
+fn despike<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
+    let (frames, joints) = size;
+    let mut q = clips::rotations::<T>(frames, joints, 1)?;
+    let mut found = vec![false; frames * joints];
+    let interrupt = Interrupt::new();
+    let filter = Despike {
+        noise: vec![clips::NOISE; joints],
+        smallest: vec![0.105; joints],
+        radius: 3,
+        threshold: 4.0,
+    };
+    for name in ["filters/despike", "filters/despike/spikes"] {
+        let clip = ClipView::new(&q, frames, joints)?;
+        timer.threads::<T, _, _>(name, size, || filter.rotations(clip, None, &mut found, &interrupt))?;
+        for sample in q.chunks_exact_mut(4).skip(50).step_by(100) {
+            // Half a turn about the first axis.
+            let [w, x, y, z] = [sample[0], sample[1], sample[2], sample[3]];
+            sample.copy_from_slice(&[-x, w, z, -y]);
+        }
+    }
+    Ok(())
 }
 
 fn fill_gaps<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {

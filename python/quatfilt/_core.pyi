@@ -17,6 +17,7 @@ __all__ = [
     "develop",
     "exp",
     "fill_gaps",
+    "find_spikes",
     "forward_kinematics",
     "forward_kinematics_moving",
     "from_euler",
@@ -77,6 +78,17 @@ def butterworth(
     padding: int,
     /,
 ) -> tuple[Array, Array | None]: ...
+
+# filters/despike
+def find_spikes(
+    x: Array,
+    confidence: Array | None,
+    noise: NDArray[np.float64],
+    smallest: NDArray[np.float64],
+    radius: int,
+    threshold: float,
+    /,
+) -> Mask: ...
 
 # filters/development
 def develop(

@@ -56,6 +56,13 @@ def streamed(stream, q):
     return np.concatenate([poses, stream.flush()])
 
 
+def with_spikes(q):
+    """Return a joint that turns slowly, with the first samples of `q` as spikes in it."""
+    slow = qf.exp(np.linspace(0, 9, len(q), dtype=q.dtype)[:, None, None] * np.ones((3, 3), q.dtype))
+    slow[40::50] = q[40::50]
+    return slow
+
+
 CALLS = {
     "BilateralStream": lambda a, _b, _v: streamed(
         qf.BilateralStream(sigma_angle=1.0, iterations=2, lookahead=2), a
@@ -70,6 +77,7 @@ CALLS = {
     "conjugate": lambda a, _b, _v: qf.conjugate(a),
     "continuous": lambda a, _b, _v: qf.continuous(with_gaps(a)),
     "denoise": lambda a, _b, _v: qf.denoise(with_gaps(a)),
+    "despike": lambda a, _b, _v: qf.despike(with_gaps(with_spikes(a)), smallest=0.5),
     "exp": lambda _a, _b, v: qf.exp(v),
     "fill_gaps": lambda a, _b, _v: qf.fill_gaps(with_gaps(a))[0],
     "gaussian": lambda a, _b, _v: qf.gaussian(with_gaps(a), sigma=2.5),
