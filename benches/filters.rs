@@ -4,6 +4,7 @@ use quatfilt_benches::clips;
 use quatfilt_benches::settings;
 use quatfilt_benches::timer::Timer;
 use quatfilt_core::filters::bilateral::{Bilateral, Kernel};
+use quatfilt_core::filters::confidence;
 use quatfilt_core::filters::despike::Despike;
 use quatfilt_core::filters::gaps::{self, Method};
 use quatfilt_core::filters::nonlocal_pose_means::{Chart, NonlocalPoseMeans, Weights};
@@ -25,6 +26,8 @@ fn main() -> Result<(), Error> {
         orientation_filters::<f64>(&mut timer, size)?;
         fill_gaps::<f32>(&mut timer, size)?;
         fill_gaps::<f64>(&mut timer, size)?;
+        trusted::<f32>(&mut timer, size)?;
+        trusted::<f64>(&mut timer, size)?;
         despike::<f32>(&mut timer, size)?;
         despike::<f64>(&mut timer, size)?;
     }
@@ -90,6 +93,19 @@ fn orientation_filters<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Resu
     };
     timer.threads::<T, _, _>("filters/bilateral", size, || {
         filter.filter(clip, None, ClipMut::new(&mut out, frames, joints)?, &interrupt)
+    })
+}
+
+/// One sample in ten is filled in, one in ten gives way by half.
+fn trusted<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
+    let (frames, joints) = size;
+    let q = clips::rotations::<T>(frames, joints, 1)?;
+    let clip = ClipView::new(&q, frames, joints)?;
+    let mut out = vec![T::ZERO; q.len()];
+    let confidences = [T::ZERO, T::HALF, T::ONE];
+    let trust: Vec<T> = (0..frames * joints).map(|i| confidences[(i % 10).min(2)]).collect();
+    timer.threads::<T, _, _>("filters/confidence", size, || {
+        confidence::trusted(clip, &trust, ClipMut::new(&mut out, frames, joints)?)
     })
 }
 

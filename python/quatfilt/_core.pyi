@@ -48,6 +48,7 @@ __all__ = [
     "simd_level",
     "slerp",
     "to_euler",
+    "trusted",
     "undevelop",
     "weighted_moving_mean",
     "write_bvh",
@@ -78,6 +79,9 @@ def butterworth(
     padding: int,
     /,
 ) -> tuple[Array, Array | None]: ...
+
+# filters/confidence
+def trusted(q: Array, confidence: Array, /) -> Array: ...
 
 # filters/despike
 def find_spikes(

@@ -90,7 +90,9 @@ CALLS = {
     "nonlocal_pose_means": lambda a, _b, _v: qf.nonlocal_pose_means(with_gaps(a), bandwidth=1.0),
     "normalize": lambda a, _b, _v: qf.normalize(2 * a),
     "one_euro": lambda a, _b, _v: qf.one_euro(with_gaps(a), min_cutoff=0.1, beta=0.1),
-    "orientation_filter": lambda a, _b, _v: qf.orientation_filter(with_gaps(a), [1, 2, 3, 2, 1]),
+    "orientation_filter": lambda a, _b, _v: qf.orientation_filter(
+        with_gaps(a), [1, 2, 3, 2, 1], confidence=np.arange(FRAMES) % 7 / 6
+    ),
     "resample": lambda a, _b, _v: qf.resample(a, fps=30, new_fps=31.7),
     "savgol": lambda a, _b, _v: qf.savgol(with_gaps(a), window_length=11),
     "slerp": lambda a, _b, _v: qf.slerp(a, np.arange(FRAMES), np.linspace(0, FRAMES - 1, 10_001)),

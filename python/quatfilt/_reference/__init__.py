@@ -11,6 +11,7 @@ or with four zeros.
 
 from quatfilt._reference.filters.bilateral import bilateral
 from quatfilt._reference.filters.butterworth import butterworth
+from quatfilt._reference.filters.confidence import trusted
 from quatfilt._reference.filters.despike import find_spikes
 from quatfilt._reference.filters.development import develop, undevelop
 from quatfilt._reference.filters.gaps import fill_gaps
@@ -71,6 +72,7 @@ __all__ = [
     "scan",
     "slerp",
     "to_euler",
+    "trusted",
     "undevelop",
     "weighted_moving_mean",
 ]

@@ -2,6 +2,7 @@
 
 pub(crate) mod bilateral;
 pub(crate) mod butterworth;
+pub(crate) mod confidence;
 pub(crate) mod despike;
 pub(crate) mod development;
 pub(crate) mod gaps;
