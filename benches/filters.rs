@@ -4,7 +4,9 @@ use quatfilt_benches::clips;
 use quatfilt_benches::settings;
 use quatfilt_benches::timer::Timer;
 use quatfilt_core::filters::bilateral::{Bilateral, Kernel};
-use quatfilt_core::filters::gaps;
+use quatfilt_core::filters::confidence;
+use quatfilt_core::filters::despike::Despike;
+use quatfilt_core::filters::gaps::{self, Method};
 use quatfilt_core::filters::nonlocal_pose_means::{Chart, NonlocalPoseMeans, Weights};
 use quatfilt_core::filters::orientation_filter::OrientationFilter;
 use quatfilt_core::parallel::Interrupt;
@@ -24,6 +26,10 @@ fn main() -> Result<(), Error> {
         orientation_filters::<f64>(&mut timer, size)?;
         fill_gaps::<f32>(&mut timer, size)?;
         fill_gaps::<f64>(&mut timer, size)?;
+        trusted::<f32>(&mut timer, size)?;
+        trusted::<f64>(&mut timer, size)?;
+        despike::<f32>(&mut timer, size)?;
+        despike::<f64>(&mut timer, size)?;
     }
     Ok(())
 }
@@ -90,13 +96,53 @@ fn orientation_filters<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Resu
     })
 }
 
+/// One sample in ten is filled in, one in ten gives way by half.
+fn trusted<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
+    let (frames, joints) = size;
+    let q = clips::rotations::<T>(frames, joints, 1)?;
+    let clip = ClipView::new(&q, frames, joints)?;
+    let mut out = vec![T::ZERO; q.len()];
+    let confidences = [T::ZERO, T::HALF, T::ONE];
+    let trust: Vec<T> = (0..frames * joints).map(|i| confidences[(i % 10).min(2)]).collect();
+    timer.threads::<T, _, _>("filters/confidence", size, || {
+        confidence::trusted(clip, &trust, ClipMut::new(&mut out, frames, joints)?)
+    })
+}
+
+/// Noise alone, and with one spike in a hundred samples.
+fn despike<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
+    let (frames, joints) = size;
+    let mut q = clips::rotations::<T>(frames, joints, 1)?;
+    let mut found = vec![false; frames * joints];
+    let interrupt = Interrupt::new();
+    let filter = Despike {
+        noise: vec![clips::NOISE; joints],
+        smallest: vec![0.105; joints],
+        radius: 3,
+        threshold: 4.0,
+    };
+    for name in ["filters/despike", "filters/despike/spikes"] {
+        let clip = ClipView::new(&q, frames, joints)?;
+        timer.threads::<T, _, _>(name, size, || filter.rotations(clip, None, &mut found, &interrupt))?;
+        for sample in q.chunks_exact_mut(4).skip(50).step_by(100) {
+            // Half a turn about the first axis.
+            let [w, x, y, z] = [sample[0], sample[1], sample[2], sample[3]];
+            sample.copy_from_slice(&[-x, w, z, -y]);
+        }
+    }
+    Ok(())
+}
+
 fn fill_gaps<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
     let (frames, joints) = size;
     let q = clips::gappy::<T>(frames, joints, 1)?;
     let clip = ClipView::new(&q, frames, joints)?;
     let mut out = vec![T::ZERO; q.len()];
     let mut filled = vec![false; frames * joints];
-    timer.threads::<T, _, _>("filters/fill_gaps", size, || {
-        gaps::fill_gaps(clip, None, ClipMut::new(&mut out, frames, joints)?, &mut filled)
-    })
+    for (name, method) in [("filters/fill_gaps", Method::Slerp), ("filters/fill_gaps/squad", Method::Squad)] {
+        timer.threads::<T, _, _>(name, size, || {
+            gaps::fill_gaps(clip, None, method, ClipMut::new(&mut out, frames, joints)?, &mut filled)
+        })?;
+    }
+    Ok(())
 }

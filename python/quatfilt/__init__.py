@@ -12,6 +12,7 @@ from quatfilt.denoise import denoise
 from quatfilt.errors import FileAccessError, FileFormatError, QuatfiltError
 from quatfilt.filters.bilateral import bilateral
 from quatfilt.filters.butterworth import butterworth
+from quatfilt.filters.despike import despike
 from quatfilt.filters.gaps import fill_gaps
 from quatfilt.filters.gaussian import gaussian
 from quatfilt.filters.kalman import kalman
@@ -58,6 +59,7 @@ __all__ = [
     "conjugate",
     "continuous",
     "denoise",
+    "despike",
     "exp",
     "fill_gaps",
     "gaussian",

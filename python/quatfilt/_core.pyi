@@ -17,6 +17,7 @@ __all__ = [
     "develop",
     "exp",
     "fill_gaps",
+    "find_spikes",
     "forward_kinematics",
     "forward_kinematics_moving",
     "from_euler",
@@ -47,6 +48,7 @@ __all__ = [
     "simd_level",
     "slerp",
     "to_euler",
+    "trusted",
     "undevelop",
     "weighted_moving_mean",
     "write_bvh",
@@ -78,6 +80,20 @@ def butterworth(
     /,
 ) -> tuple[Array, Array | None]: ...
 
+# filters/confidence
+def trusted(q: Array, confidence: Array, /) -> Array: ...
+
+# filters/despike
+def find_spikes(
+    x: Array,
+    confidence: Array | None,
+    noise: NDArray[np.float64],
+    smallest: NDArray[np.float64],
+    radius: int,
+    threshold: float,
+    /,
+) -> Mask: ...
+
 # filters/development
 def develop(
     q: Array, confidence: Array | None, reference_sigma: NDArray[np.float64], /
@@ -91,7 +107,7 @@ def undevelop(
 ) -> Array: ...
 
 # filters/gaps
-def fill_gaps(q: Array, max_gap: int, /) -> tuple[Array, Mask]: ...
+def fill_gaps(q: Array, max_gap: int, method: str, /) -> tuple[Array, Mask]: ...
 
 # filters/gaussian
 def gaussian(

@@ -71,7 +71,7 @@ def denoise(
 
     See Also
     --------
-    nonlocal_pose_means, bilateral, orientation_filter : Filters, their options and their cost.
+    nonlocal_pose_means, bilateral, despike, orientation_filter : Filters, their options and their cost.
     report : What a filter did.
 
     Notes

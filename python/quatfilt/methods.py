@@ -10,6 +10,7 @@ from quatfilt._typing import Array
 from quatfilt.filters import (
     bilateral,
     butterworth,
+    despike,
     gaussian,
     kalman,
     nonlocal_pose_means,
@@ -63,6 +64,7 @@ class Method:
 FILTERS: Final[dict[str, Method]] = {
     "bilateral": Method(bilateral.bilateral, bilateral.with_translation, angles=("sigma_angle",)),
     "butterworth": Method(butterworth.butterworth, butterworth.with_translation),
+    "despike": Method(despike.despike, despike.with_translation, angles=("smallest",)),
     "gaussian": Method(gaussian.gaussian, gaussian.with_translation),
     "kalman": Method(
         kalman.kalman, kalman.with_translation, angles=("process_noise", "measurement_noise")

@@ -56,6 +56,13 @@ def streamed(stream, q):
     return np.concatenate([poses, stream.flush()])
 
 
+def with_spikes(q):
+    """Return a joint that turns slowly, with the first samples of `q` as spikes in it."""
+    slow = qf.exp(np.linspace(0, 9, len(q), dtype=q.dtype)[:, None, None] * np.ones((3, 3), q.dtype))
+    slow[40::50] = q[40::50]
+    return slow
+
+
 CALLS = {
     "BilateralStream": lambda a, _b, _v: streamed(
         qf.BilateralStream(sigma_angle=1.0, iterations=2, lookahead=2), a
@@ -70,6 +77,7 @@ CALLS = {
     "conjugate": lambda a, _b, _v: qf.conjugate(a),
     "continuous": lambda a, _b, _v: qf.continuous(with_gaps(a)),
     "denoise": lambda a, _b, _v: qf.denoise(with_gaps(a)),
+    "despike": lambda a, _b, _v: qf.despike(with_gaps(with_spikes(a)), smallest=0.5),
     "exp": lambda _a, _b, v: qf.exp(v),
     "fill_gaps": lambda a, _b, _v: qf.fill_gaps(with_gaps(a))[0],
     "gaussian": lambda a, _b, _v: qf.gaussian(with_gaps(a), sigma=2.5),
@@ -82,7 +90,9 @@ CALLS = {
     "nonlocal_pose_means": lambda a, _b, _v: qf.nonlocal_pose_means(with_gaps(a), bandwidth=1.0),
     "normalize": lambda a, _b, _v: qf.normalize(2 * a),
     "one_euro": lambda a, _b, _v: qf.one_euro(with_gaps(a), min_cutoff=0.1, beta=0.1),
-    "orientation_filter": lambda a, _b, _v: qf.orientation_filter(with_gaps(a), [1, 2, 3, 2, 1]),
+    "orientation_filter": lambda a, _b, _v: qf.orientation_filter(
+        with_gaps(a), [1, 2, 3, 2, 1], confidence=np.arange(FRAMES) % 7 / 6
+    ),
     "resample": lambda a, _b, _v: qf.resample(a, fps=30, new_fps=31.7),
     "savgol": lambda a, _b, _v: qf.savgol(with_gaps(a), window_length=11),
     "slerp": lambda a, _b, _v: qf.slerp(a, np.arange(FRAMES), np.linspace(0, FRAMES - 1, 10_001)),

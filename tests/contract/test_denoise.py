@@ -93,7 +93,7 @@ def test_unknown_options():
     )
     assert refused(TypeError, sigma=3, method=["bilateral", "orientation_filter", "bilateral"]) == (
         f"sigma: expected an option of bilateral ({options(qf.bilateral)}) or "
-        "orientation_filter (mask, iterations, boundary, gaps, max_gap, fps, scalar_first), got this name"
+        "orientation_filter (mask, iterations, boundary, confidence, gaps, max_gap, fps, scalar_first), got this name"
     )
 
 
@@ -211,7 +211,9 @@ def test_chains_refuse_arrays_in_the_words_of_their_steps(shape):
 
 @pytest.mark.parametrize("name", chains.SINGLE)
 def test_every_method_filters_motions_and_their_translation(name):
-    noisy = motion()
+    path = clips.path(np.random.default_rng(2), FRAMES)
+    path[30] += 2
+    noisy = motion(path=path)
     before = noisy.rotations.tobytes(), noisy.translation.tobytes()
     result = qf.denoise(noisy, method=name, **chains.SINGLE[name])
     expected = qf.denoise(noisy.rotations, method=name, fps=120, **chains.SINGLE[name])

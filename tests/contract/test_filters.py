@@ -14,6 +14,7 @@ FILTERS = {
     "bilateral": qf.bilateral,
     "butterworth": lambda q, *more, cutoff=0.1, **options: qf.butterworth(q, *more, cutoff=cutoff, **options),
     "denoise": qf.denoise,
+    "despike": qf.despike,
     "gaussian": lambda q, *more, sigma=2.0, **options: qf.gaussian(q, *more, sigma=sigma, **options),
     "kalman": qf.kalman,
     "nonlocal_pose_means": qf.nonlocal_pose_means,
@@ -33,6 +34,7 @@ OPTIONS = {
     "bilateral": qf.bilateral.__kwdefaults__,
     "butterworth": {"cutoff": None, **qf.butterworth.__kwdefaults__},
     "denoise": qf.nonlocal_pose_means.__kwdefaults__,
+    "despike": qf.despike.__kwdefaults__,
     "gaussian": {"sigma": None, **qf.gaussian.__kwdefaults__},
     "kalman": qf.kalman.__kwdefaults__,
     "nonlocal_pose_means": qf.nonlocal_pose_means.__kwdefaults__,
@@ -45,6 +47,9 @@ OPTIONS = {
 """The options of each filter."""
 
 every_filter = pytest.mark.parametrize("name", FILTERS)
+
+every_filter_of_all_samples = pytest.mark.parametrize("name", sorted(set(FILTERS) - {"despike"}))
+"""Those that leave no sample as it came."""
 
 FRAMES = 90
 REACH = 15
@@ -220,7 +225,7 @@ def test_a_single_series_is_one_joint(name):
 
 
 @pytest.mark.parametrize("scale", [0.92, 1.08])
-@every_filter
+@every_filter_of_all_samples
 def test_lengths_near_one_are_normalised(name, scale):
     q = clip()
     result = FILTERS[name](scale * q)
@@ -400,6 +405,9 @@ WRONG_OPTIONS = [
     ("sigma", [1.0, 2.0], ValueError, "expected a number or one per joint, shape (3,), got (2,)"),
     ("sigma", [1.0, -2.0, 1.0], ValueError, f"[1]{{}}{POSITIVE} and at most 25000, got -2.0"),
     ("sigma", None, TypeError, "expected real numbers, got dtype object"),
+    ("smallest", -0.1, ValueError, f"{NOT_NEGATIVE}, got -0.1"),
+    ("smallest", [0.1, 0.1], ValueError, "expected a number or one per joint, shape (3,), got (2,)"),
+    ("smallest", [0.1, 0.1, math.nan], ValueError, f"[2]{{}}{NOT_NEGATIVE}, got nan"),
     ("sigma_time", 0, ValueError, f"{POSITIVE}, got 0"),
     ("sigma_time", math.inf, ValueError, f"{POSITIVE}, got inf"),
     ("sigma_time", [1.0], TypeError, f"{POSITIVE}, got list"),
@@ -498,9 +506,31 @@ WRONG_OPTIONS = [
 ]
 
 
+WRONG_OPTIONS_OF_DESPIKE = [
+    ("radius", 1, ValueError, "expected an integer of at least 2 and at most 1000, got 1"),
+    ("radius", 1001, ValueError, "expected an integer of at least 2 and at most 1000, got 1001"),
+    ("radius", 3.0, TypeError, "expected an integer of at least 2 and at most 1000, got float"),
+    ("threshold", 0, ValueError, f"{POSITIVE}, got 0"),
+    ("threshold", math.inf, ValueError, f"{POSITIVE}, got inf"),
+    ("threshold", [4.0], TypeError, f"{POSITIVE}, got list"),
+]
+"""Of options whose names stand for something else in other filters."""
+
+
+@pytest.mark.parametrize(("option", "value", "kind", "message"), WRONG_OPTIONS_OF_DESPIKE)
+@pytest.mark.parametrize("frames", [0, 1, FRAMES])
+def test_wrong_options_of_despike(frames, option, value, kind, message):
+    assert refused(kind, qf.despike, clip(frames=frames), **{option: value}) == f"{option}: {message}"
+
+
 @pytest.mark.parametrize(
     ("name", "option", "value", "kind", "message"),
-    [(name, *case) for name in FILTERS for case in WRONG_OPTIONS if case[0] in OPTIONS[name]],
+    [
+        (name, *case)
+        for name in FILTERS
+        for case in WRONG_OPTIONS
+        if case[0] in OPTIONS[name] and not (name == "despike" and case[0] in ("radius", "threshold"))
+    ],
 )
 def test_wrong_options(name, option, value, kind, message):
     said = refused(kind, FILTERS[name], clip(), **{option: value})
@@ -522,6 +552,7 @@ def test_wrong_options(name, option, value, kind, message):
             ("measurement_noise", 0),
             ("min_cutoff", 0),
             ("iterations", 0),
+            ("smallest", -1),
             ("gaps", "drop"),
             ("fps", 0),
         ]
@@ -570,6 +601,15 @@ def test_one_scale_of_angles_per_joint():
     result = qf.bilateral(q, sigma_angle=[0.1, 0.2, math.inf])
     for joint, sigma in enumerate([0.1, 0.2, math.inf]):
         np.testing.assert_array_equal(result[:, joint], qf.bilateral(q[:, joint], sigma_angle=sigma))
+
+
+def test_one_smallest_spike_per_joint():
+    q = clip()
+    q[40] = clips.product(q[40], clips.from_vectors(np.array([0.5, 0.3, 0])))
+    result = qf.despike(q, smallest=[0.1, 0.2, 1.0])
+    assert (result != q).any(axis=-1).tolist() == [
+        [frame == 40, frame == 40, False] for frame in range(FRAMES)
+    ]
 
 
 def test_numbers_of_numpy_and_one_bandwidth_per_joint():

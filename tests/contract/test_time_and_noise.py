@@ -21,6 +21,7 @@ CLIP_TO_CLIP = {
     "add_impulse_noise": lambda q, **options: qf.add_impulse_noise(q, probability=0.5, rng=3, **options),
     "continuous": qf.continuous,
     "fill_gaps": lambda q, **options: qf.fill_gaps(q, **options)[0],
+    "fill_gaps by squad": lambda q, **options: qf.fill_gaps(q, method="squad", **options)[0],
     "resample": lambda q, **options: qf.resample(q, fps=30, new_fps=47, **options),
     "slerp": lambda q, **options: qf.slerp(q, np.arange(len(q)), np.linspace(0, len(q) - 1, 9), **options),
 }
@@ -137,6 +138,13 @@ def test_gaps_are_measured_in_seconds(max_gap, fps, filled):
 def test_gaps_have_no_negative_length():
     with pytest.raises(ValueError, match=r"^max_gap: expected a number of at least 0, got -1$"):
         qf.fill_gaps(clip(), max_gap=-1)
+
+
+@pytest.mark.parametrize("method", ["linear", None])
+def test_gaps_are_filled_in_known_ways(method):
+    with pytest.raises(ValueError) as caught:
+        qf.fill_gaps(clip(), method=method)
+    assert str(caught.value) == f"method: expected one of 'slerp', 'squad', got {method!r}"
 
 
 def test_the_level_has_the_shape_of_the_joints():

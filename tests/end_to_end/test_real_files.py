@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import pytest
 import quatfilt as qf
+from quatfilt.filters import despike
 
 COMMAND = [sys.executable, "-m", "quatfilt"]
 
@@ -43,6 +44,31 @@ def test_info_denoise_and_compare(data_dir, tmp_path, name):
     assert compared["angle_mean"] < 5 * described["noise_degrees"]
     assert compared["position"] < 2
     assert 0.75 < compared["peak_kept"] < 1.02
+
+
+@pytest.mark.parametrize(
+    ("name", "joint", "frames"),
+    [
+        ("05/05_05", "ltoes", [549, 550]),
+        ("05/05_06", "ltoes", [268, 269]),
+        ("05/05_18", "ltoes", [78]),
+        ("02/02_09", "rtoes", [412, 477, 620]),
+        ("16/16_17", "root", [474]),
+        ("09/09_10", "lradius", []),  # by 118 degrees from the fourth frame to the fifth: a jump, which stays
+    ],
+)
+def test_spikes_of_recordings(data_dir, name, joint, frames):
+    motion = qf.read_motion(data_dir / f"cmu/{name}.amc")
+    index = motion.skeleton.names.index(joint)
+    found = despike.spikes(motion.rotations)
+    assert set(frames) <= set(np.flatnonzero(found[:, index]).tolist())
+    assert found.mean() < 0.005
+    result = qf.despike(motion.rotations)
+    np.testing.assert_array_equal(abs(result[~found]), abs(motion.rotations[~found]))
+    steps = np.degrees(qf.geodesic_distance(result[1:, index], result[:-1, index]))
+    assert all(steps[frame - 1] < 15 for frame in frames)
+    if not frames:
+        assert steps.max() > 100
 
 
 def test_noise_on_a_recording_is_taken_away(data_dir, tmp_path):

@@ -11,6 +11,8 @@ or with four zeros.
 
 from quatfilt._reference.filters.bilateral import bilateral
 from quatfilt._reference.filters.butterworth import butterworth
+from quatfilt._reference.filters.confidence import trusted
+from quatfilt._reference.filters.despike import find_spikes
 from quatfilt._reference.filters.development import develop, undevelop
 from quatfilt._reference.filters.gaps import fill_gaps
 from quatfilt._reference.filters.gaussian import gaussian
@@ -47,6 +49,7 @@ __all__ = [
     "develop",
     "exp",
     "fill_gaps",
+    "find_spikes",
     "forward_kinematics",
     "forward_kinematics_moving",
     "from_euler",
@@ -69,6 +72,7 @@ __all__ = [
     "scan",
     "slerp",
     "to_euler",
+    "trusted",
     "undevelop",
     "weighted_moving_mean",
 ]

@@ -2,12 +2,14 @@
 
 Gaps up to `max_gap` are filled along geodesics, and what was filled has confidence 0. Longer gaps stay missing: the
 clip is cut where one begins or ends, each span is filtered apart, with the joints that are there.
+
+Filters with weights of their own take the confidences. For others `Clip.trusted` prepares the samples.
 """
 
 import itertools
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -39,6 +41,8 @@ class Clip:
     """``(frames, joints, 4)``; NaN only in gaps longer than `max_gap`."""
     confidence: Array | None
     """``(frames, joints)``; 0 where samples were filled in."""
+    weighed: bool
+    """Whether the caller said how far samples are to be trusted."""
     missing: Mask
     spans: tuple[Span, ...]
     gaps: Gaps
@@ -58,18 +62,30 @@ class Clip:
 
     def filter(self, run: Callable[[Array, Array | None, Span], Array]) -> Array:
         """Run a filter over each span, ``(rotations, confidence, span) -> rotations``, and finish."""
-        if self.unchanged:
-            return self.finish(self.rotations.copy())
+        return self.finish(self.rotations.copy() if self.unchanged else self._each(run))
+
+    def trusted(self) -> "Clip":
+        """Return the clip for a filter without weights of its own: samples gave way as far as they are not trusted."""
+        if not self.weighed or self.unchanged:
+            return self
+
+        def run(rotations: Array, trust: Array | None, _span: Span) -> Array:
+            return rotations if trust is None else cast("Array", ops().trusted(rotations, trust))
+
+        return replace(self, rotations=self._each(run))
+
+    def _each(self, run: Callable[[Array, Array | None, Span], Array]) -> Array:
+        """Run a filter over each span."""
         frames, joints, _ = self.rotations.shape
         if [(span.frames, len(span.joints)) for span in self.spans] == [(slice(0, frames), joints)]:
-            return self.finish(run(self.rotations, self.confidence, self.spans[0]))
+            return run(self.rotations, self.confidence, self.spans[0])
         result = np.full_like(self.rotations, np.nan)
         for span in self.spans:
             part = np.ascontiguousarray(self.rotations[span.frames, span.joints])
             trust = None if self.confidence is None else self.confidence[span.frames, span.joints]
             filtered = run(part, None if trust is None else np.ascontiguousarray(trust), span)
             result[span.frames, span.joints] = filtered
-        return self.finish(result)
+        return result
 
 
 def prepare(
@@ -94,10 +110,10 @@ def prepare(
         raise ValueError(f"rotations: expected no missing samples with gaps='raise', got {count}")
     if count and frames > 1:
         missing = ~np.isfinite(rotations).all(axis=-1) | (rotations == 0).all(axis=-1)
-        rotations, _ = ops().fill_gaps(rotations, longest)
+        rotations, _ = ops().fill_gaps(rotations, longest, "slerp")
         trust = np.where(missing, 0, 1 if trust is None else trust).astype(rotations.dtype)
         spans = _spans(np.isnan(rotations[..., 0]))
-    return Clip(rotations, trust, missing, spans, policy, array.shape, scalar_first)
+    return Clip(rotations, trust, confidence is not None, missing, spans, policy, array.shape, scalar_first)
 
 
 def _spans(missing: Mask) -> tuple[Span, ...]:

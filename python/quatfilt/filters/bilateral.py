@@ -29,6 +29,7 @@ def bilateral(
     iterations: int = 1,
     boundary: Boundary = "mirror",
     lookahead: int | None = None,
+    confidence: ArrayLike | None = None,
     gaps: _spans.Gaps = "fill",
     max_gap: float | None = None,
     fps: float = 1.0,
@@ -63,6 +64,9 @@ def bilateral(
         the angular velocity is held; the end pose is held.
     lookahead : int or None, frames, default None
         If given, each pass sees at most so many later frames; all of them together `iterations` times as many.
+    confidence : array_like, shape (frames,) or (frames, joints), 0…1, or None, default None
+        How far samples are trusted. Those of confidence 0 are filled in like missing ones, whatever they are; those of a
+        confidence `c` below 1 are first moved by ``1 − c`` of the way to the mean of what is around them.
     gaps : {"fill", "keep", "raise"}, default "fill"
         What becomes of missing samples. Filled ones count like any other; with ``"keep"`` they are missing again in the
         result.
@@ -121,6 +125,7 @@ def bilateral(
         iterations=iterations,
         boundary=boundary,
         lookahead=lookahead,
+        confidence=confidence,
         gaps=gaps,
         max_gap=max_gap,
         fps=fps,
@@ -139,10 +144,14 @@ def with_translation(
     iterations: int,
     boundary: Boundary,
     lookahead: int | None,
+    confidence: ArrayLike | None,
     **missing: Any,
 ) -> tuple[Array, Array | None]:
-    """Filter as `bilateral` does, and a translation ``(frames, 3)`` with the root's weights."""
-    clip = _spans.prepare(q, confidence=None, **missing)
+    """Filter as `bilateral` does, and a translation ``(frames, 3)`` with the root's weights.
+
+    The confidences are those of rotations: positions are trusted.
+    """
+    clip = _spans.prepare(q, confidence=confidence, **missing).trusted()
     reach = _validation.integer(radius, "radius", at_least=0, at_most=_LONGEST_RADIUS)
     time = _validation.number(sigma_time, "sigma_time", above=0)
     angles = _validation.per_joint(

@@ -1,12 +1,17 @@
 """Gaps: runs of missing samples."""
 
 import math
+from typing import Literal
 
 from numpy.typing import ArrayLike
 
 from quatfilt import _validation
 from quatfilt._backend import ops
 from quatfilt._typing import Array, Mask
+
+Method = Literal["slerp", "squad"]
+
+_METHODS: tuple[Method, ...] = ("slerp", "squad")
 
 _ROUNDING = 1e-9
 """Frames by which a gap of exactly `max_gap` may seem longer."""
@@ -23,12 +28,18 @@ def gap_frames(max_gap: float | None, fps: float, frames: int) -> int:
 
 
 def fill_gaps(
-    q: ArrayLike, *, max_gap: float | None = None, fps: float = 1.0, scalar_first: bool = True
+    q: ArrayLike,
+    *,
+    max_gap: float | None = None,
+    method: Method = "slerp",
+    fps: float = 1.0,
+    scalar_first: bool = True,
 ) -> tuple[Array, Mask]:
     """Fill runs of missing samples.
 
     A run between two valid samples of a joint is filled along the geodesic that joins them, the shorter way, at
-    constant angular velocity. A run at an end of the clip is held at the nearest valid sample.
+    constant angular velocity; with ``method="squad"`` on a curve that takes up the motion before and after it. A run at
+    an end of the clip is held at the nearest valid sample.
 
     Parameters
     ----------
@@ -37,6 +48,10 @@ def fill_gaps(
     max_gap : float or None, seconds, default None
         The longest run that is filled; None for any length. Longer runs, and joints without any valid sample, become
         NaN.
+    method : {"slerp", "squad"}, default "slerp"
+        The way through a gap. ``"squad"`` is Shoemake's spherical cubic: at either end it has the angular velocity of
+        the parabola through the sample there, the valid one before it and the valid one after it; where there is none
+        beyond the gap, that of the geodesic.
     fps : float, hertz, default 1.0
         Frame rate; without it `max_gap` counts frames.
     scalar_first : bool, default True
@@ -59,6 +74,13 @@ def fill_gaps(
     -----
     Linear in the number of samples: about 15 ns each and per thread.
 
+    Over long gaps ``"squad"`` extrapolates: noise of the velocities at the ends is multiplied by up to 0.15 times the
+    length of the gap in frames.
+
+    References
+    ----------
+    .. [1] K. Shoemake, "Quaternion calculus and fast animation", SIGGRAPH 1987 course notes.
+
     Examples
     --------
     >>> import numpy as np, quatfilt as qf
@@ -73,7 +95,8 @@ def fill_gaps(
     """
     array = _validation.quaternions(q, "q", scalar_first=scalar_first)
     clip, _ = _validation.clip(array, "q")
-    rotations, filled = ops().fill_gaps(clip, gap_frames(max_gap, fps, len(clip)))
+    way = _validation.choice(method, "method", _METHODS)
+    rotations, filled = ops().fill_gaps(clip, gap_frames(max_gap, fps, len(clip)), way)
     return (
         _validation.scalar_order(rotations.reshape(array.shape), scalar_first=scalar_first),
         filled.reshape(array.shape[:-1]),

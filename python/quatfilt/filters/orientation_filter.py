@@ -17,6 +17,7 @@ def orientation_filter(
     *,
     iterations: int = 1,
     boundary: Boundary = "mirror",
+    confidence: ArrayLike | None = None,
     gaps: _spans.Gaps = "fill",
     max_gap: float | None = None,
     fps: float = 1.0,
@@ -44,6 +45,9 @@ def orientation_filter(
     boundary : {"mirror", "linear", "nearest"}, default "mirror"
         How the clip goes on beyond its ends, anew each time: time turns round at the end frame, which is not repeated;
         the angular velocity is held; the end pose is held.
+    confidence : array_like, shape (frames,) or (frames, joints), 0…1, or None, default None
+        How far samples are trusted. Those of confidence 0 are filled in like missing ones, whatever they are; those of a
+        confidence `c` below 1 are first moved by ``1 − c`` of the way to the mean of what is around them.
     gaps : {"fill", "keep", "raise"}, default "fill"
         What becomes of missing samples. Filled ones count like any other; with ``"keep"`` they are missing again in the
         result.
@@ -90,6 +94,7 @@ def orientation_filter(
         mask=mask,
         iterations=iterations,
         boundary=boundary,
+        confidence=confidence,
         gaps=gaps,
         max_gap=max_gap,
         fps=fps,
@@ -104,10 +109,14 @@ def with_translation(
     mask: ArrayLike,
     iterations: int,
     boundary: Boundary,
+    confidence: ArrayLike | None,
     **missing: Any,
 ) -> tuple[Array, Array | None]:
-    """Filter as `orientation_filter` does, and a translation ``(frames, 3)`` with the same mask."""
-    clip = _spans.prepare(q, confidence=None, **missing)
+    """Filter as `orientation_filter` does, and a translation ``(frames, 3)`` with the same mask.
+
+    The confidences are those of rotations: positions are trusted.
+    """
+    clip = _spans.prepare(q, confidence=confidence, **missing).trusted()
     options = (
         _validation.mask(mask, "mask"),
         _validation.integer(iterations, "iterations", at_least=1),

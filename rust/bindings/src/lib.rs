@@ -18,6 +18,10 @@ mod _core {
     #[pymodule_export]
     use super::filters::butterworth::butterworth;
     #[pymodule_export]
+    use super::filters::confidence::trusted;
+    #[pymodule_export]
+    use super::filters::despike::find_spikes;
+    #[pymodule_export]
     use super::filters::development::{develop, undevelop};
     #[pymodule_export]
     use super::filters::gaps::fill_gaps;

@@ -37,17 +37,24 @@ def noise_level(q: Reals) -> Reals:
     average over the joints with 0.016 rad, a run of 37 frames 24 %; all are within 4 % with 0.08 rad or more, and at
     120 frames per second.
 
+    Positions have a level too, in their unit: their increments are plain differences.
+
     Parameters
     ----------
-    q : array (frames, joints, 4)
-        Rotations.
+    q : array (frames, joints, 4) or (frames, points, 3)
+        Rotations, or positions without missing ones.
     """
     level = np.min([level_of_order(increments(q), order) for order in ORDERS], axis=0)
     return np.asarray(np.where(np.isfinite(level), level, 0), q.dtype)
 
 
 def increments(q: Reals) -> Reals:
-    """Rotation vectors from each frame to the next, NaN beside missing samples; `(frames − 1, joints, 3)`."""
+    """Rotation vectors from each frame to the next, NaN beside missing samples; `(frames − 1, joints, 3)`.
+
+    Of positions `(frames, points, 3)` the differences.
+    """
+    if q.shape[-1] == 3:
+        return np.diff(q.astype(np.float64), axis=0)
     missing = is_missing(q)
     rotations = normalize(np.where(missing[..., None], 1.0, q.astype(np.float64)))
     result = 2 * log_short(between(rotations[:-1], rotations[1:]))

@@ -1,19 +1,22 @@
 //! Gaps: runs of missing samples.
 
+use super::names::named;
 use crate::array::{by_dtype, clip, clip_mut, input, output, run};
 use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
-use quatfilt_core::filters::gaps;
+use quatfilt_core::filters::gaps::{self, Method};
 
 /// Filled runs of missing samples, `(frames, joints, 4)`, and where samples were filled in, `(frames, joints)`.
 #[pyfunction]
-#[pyo3(signature = (q, max_gap, /))]
+#[pyo3(signature = (q, max_gap, method, /))]
 pub(crate) fn fill_gaps(
     py: Python<'_>,
     q: &Bound<'_, PyAny>,
     max_gap: isize,
+    method: &str,
 ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
     let max_gap = usize::try_from(max_gap).ok();
+    let method = named("method", method, &[("slerp", Method::Slerp), ("squad", Method::Squad)])?;
     by_dtype!(q, T => {
         let q = input::<T>("q", q)?;
         let out = output::<T>(py, q.shape());
@@ -23,7 +26,7 @@ pub(crate) fn fill_gaps(
             let (mut out, mut filled) = (out.readwrite(), filled.readwrite());
             let out = clip_mut(&mut out, q.frames(), q.joints())?;
             let filled = filled.as_slice_mut()?;
-            run(py, || gaps::fill_gaps(q, max_gap, out, filled))?;
+            run(py, || gaps::fill_gaps(q, max_gap, method, out, filled))?;
         }
         Ok((out.into_any().unbind(), filled.into_any().unbind()))
     })

@@ -2,6 +2,8 @@
 
 pub(crate) mod bilateral;
 pub(crate) mod butterworth;
+pub(crate) mod confidence;
+pub(crate) mod despike;
 pub(crate) mod development;
 pub(crate) mod gaps;
 pub(crate) mod gaussian;

@@ -2,12 +2,23 @@
 
 use crate::error::check_length;
 use crate::rotations::continuity::make_continuous;
-use crate::rotations::quaternion::{is_missing, of_row};
+use crate::rotations::quaternion::{
+    between, dot, exp_one, is_missing, log_one, log_short, negative, of_row, product, unit,
+};
 use crate::rotations::resample::between_neighbours;
 use crate::{ClipMut, ClipView, Error, Real, parallel};
 
 /// Samples per task.
 const TILE: usize = 32 * 1024;
+
+/// The way through a gap.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// The shorter geodesic, at constant angular velocity.
+    Slerp,
+    /// Shoemake's spherical cubic, which takes up the angular velocities at its ends.
+    Squad,
+}
 
 /// A run of missing samples of one joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,10 +54,93 @@ fn runs(missing: &[usize], joints: usize) -> Vec<Run> {
     runs
 }
 
+/// A valid sample and its frame.
+#[derive(Debug, Clone, Copy)]
+struct Key {
+    frame: usize,
+    q: [f64; 4],
+}
+
+/// Half the rotation vector per frame from one key to the next.
+fn slope(from: Key, to: Key) -> [f64; 3] {
+    let frames = to.frame.abs_diff(from.frame) as f64;
+    log_short(between(from.q, to.q)).map(|x| x / frames)
+}
+
+/// Half the rotation vector per frame at `key`, between `before` and `after`: the slope of the parabola through the
+/// three, or that of the geodesic where one of them is lacking.
+fn velocity(before: Option<Key>, key: Key, after: Option<Key>) -> [f64; 3] {
+    match (before, after) {
+        (Some(before), Some(after)) => {
+            let (h, k) = ((key.frame - before.frame) as f64, (after.frame - key.frame) as f64);
+            let (v, w) = (slope(before, key), slope(key, after));
+            std::array::from_fn(|c| (k * v[c] + h * w[c]) / (h + k))
+        }
+        (Some(before), None) => slope(before, key),
+        (None, Some(after)) => slope(key, after),
+        (None, None) => [0.0; 3],
+    }
+}
+
+/// The rotation at `part` of the way from `x` to `y`, signs taken as they are.
+fn along(x: [f64; 4], y: [f64; 4], part: f64) -> [f64; 4] {
+    product(x, exp_one(log_one(between(x, y)).map(|v| v * part)))
+}
+
+/// Shoemake's spherical cubic from one key to the next, with the velocities that it has at its ends.
+struct Squad {
+    a: [f64; 4],
+    b: [f64; 4],
+    after_a: [f64; 4],
+    before_b: [f64; 4],
+}
+
+impl Squad {
+    /// The curve through the middle two of four keys.
+    fn new(before: Option<Key>, a: Key, b: Key, after: Option<Key>) -> Self {
+        let frames = (b.frame - a.frame) as f64;
+        let b = if dot(a.q, b.q) < 0.0 { Key { q: negative(b.q), ..b } } else { b };
+        let chord = log_short(between(a.q, b.q));
+        let (v, w) = (velocity(before, a, Some(b)), velocity(Some(a), b, after));
+        let towards = |q, by: [f64; 3]| product(q, exp_one(by.map(|x| x / 2.0)));
+        Self {
+            a: a.q,
+            b: b.q,
+            after_a: towards(a.q, std::array::from_fn(|c| frames * v[c] - chord[c])),
+            before_b: towards(b.q, std::array::from_fn(|c| chord[c] - frames * w[c])),
+        }
+    }
+
+    fn at(&self, part: f64) -> [f64; 4] {
+        let outer = along(self.a, self.b, part);
+        let inner = along(self.after_a, self.before_b, part);
+        along(outer, inner, 2.0 * part * (1.0 - part))
+    }
+}
+
+/// The nearest valid samples of a run's joint before and after it, and those beyond them: what [`Squad::new`] takes.
+///
+/// The runs are those of all joints, in order.
+fn keys<T: Real>(
+    q: ClipView<'_, T>,
+    runs: &[Run],
+    index: usize,
+) -> Option<(Option<Key>, Key, Key, Option<Key>)> {
+    let run = runs[index];
+    let key = |frame: usize| Key { frame, q: unit(q.at(frame, run.joint).map(T::to_f64)) };
+    let a = run.start.checked_sub(1)?;
+    let b = Some(run.end).filter(|&frame| frame < q.frames())?;
+    let earlier = index.checked_sub(1).map(|i| runs[i]).filter(|r| r.joint == run.joint && r.end == a);
+    let later = runs.get(index + 1).copied().filter(|r| r.joint == run.joint && r.start == b + 1);
+    let before = earlier.map_or(a, |r| r.start).checked_sub(1);
+    let after = Some(later.map_or(b + 1, |r| r.end)).filter(|&frame| frame < q.frames());
+    Some((before.map(key), key(a), key(b), after.map(key)))
+}
+
 /// Fills the runs of missing samples of each joint.
 ///
-/// A run between two valid samples is filled along the shorter geodesic between them, at constant angular velocity; a
-/// run at an end of the clip is held at the nearest valid sample. Runs of more than `max_gap` frames (`None`: no limit)
+/// A run between two valid samples is filled along the way from one to the other that `method` names; a run at an end of
+/// the clip is held at the nearest valid sample. Runs of more than `max_gap` frames (`None`: no limit)
 /// and joints without any valid sample become NaN. `filled` tells where samples were filled in, `(frames, joints)`. The
 /// result is continuous in sign from the first valid sample.
 ///
@@ -55,6 +149,7 @@ fn runs(missing: &[usize], joints: usize) -> Vec<Run> {
 pub fn fill_gaps<T: Real>(
     q: ClipView<'_, T>,
     max_gap: Option<usize>,
+    method: Method,
     out: ClipMut<'_, T>,
     filled: &mut [bool],
 ) -> Result<(), Error> {
@@ -67,15 +162,22 @@ pub fn fill_gaps<T: Real>(
         return Ok(());
     }
     let missing = copy(q.data(), out)?;
-    for run in runs(&missing, joints) {
+    let runs = runs(&missing, joints);
+    for (index, &run) in runs.iter().enumerate() {
         let before = run.start.checked_sub(1).map(|frame| q.at(frame, run.joint));
         let after = (run.end < frames).then(|| q.at(run.end, run.joint));
         let short = max_gap.is_none_or(|most| run.end - run.start <= most);
         let ends = before.or(after).zip(after.or(before)).filter(|_| short);
-        let intervals = T::from_f64((run.end - run.start + 1) as f64);
+        let curve = if method == Method::Squad && short { keys(q, &runs, index) } else { None };
+        let curve = curve.map(|(before, a, b, after)| Squad::new(before, a, b, after));
+        let intervals = (run.end - run.start + 1) as f64;
         for frame in run.start..run.end {
+            let steps = (frame + 1 - run.start) as f64;
             let value = ends.map_or([T::nan(); 4], |(a, b)| {
-                let part = T::from_f64((frame + 1 - run.start) as f64) / intervals;
+                if let Some(curve) = &curve {
+                    return curve.at(steps / intervals).map(T::from_f64);
+                }
+                let part = T::from_f64(steps) / T::from_f64(intervals);
                 // Between equal ends, which hold a sample, every part is that sample.
                 between_neighbours(a, b, if before.is_none() || after.is_none() { T::ZERO } else { part })
             });

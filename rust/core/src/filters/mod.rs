@@ -3,6 +3,8 @@
 pub mod bilateral;
 pub mod butterworth;
 mod columns;
+pub mod confidence;
+pub mod despike;
 pub mod development;
 pub mod gaps;
 pub mod gaussian;

@@ -103,9 +103,7 @@ fn level<T: Real>(planes: [&mut [T]; 3], buffer: &mut Vec<T>) -> f64 {
                 second_differences(values);
             }
             *plane = &mut values[..length];
-            // The increments are half the rotation vectors.
-            let median =
-                median_of_absolute(plane, complete, FEWEST, buffer).map_or(f64::INFINITY, |x| 2.0 * x);
+            let median = median_of_absolute(plane, complete, FEWEST, buffer).unwrap_or(f64::INFINITY);
             let deviation = median / squares.sqrt() / MEDIAN_OF_NORMAL;
             mean += deviation * deviation / 3.0;
         }
@@ -133,8 +131,30 @@ pub fn noise_level<T: Real>(q: ClipView<'_, T>, out: &mut [T]) -> Result<(), Err
         let mut buffer = Vec::new();
         increments(q, group * GROUP, out.len(), &mut planes);
         for (joint, out) in out.iter_mut().enumerate() {
-            *out = T::from_f64(level(planes.rows_mut::<3>(joint * 3), &mut buffer));
+            // The increments are half the rotation vectors.
+            *out = T::from_f64(2.0 * level(planes.rows_mut::<3>(joint * 3), &mut buffer));
         }
+        Ok(())
+    })
+}
+
+/// The same of positions `(frames, points, 3)` without missing ones, in their unit: `(points)`.
+///
+/// # Errors
+/// [`Error::Length`] if the slices do not fit.
+pub fn noise_level_of_positions<T: Real>(positions: &[T], points: usize, out: &mut [T]) -> Result<(), Error> {
+    check_length("out", points, out.len())?;
+    let frames = positions.len() / (points * 3).max(1);
+    check_length("positions", frames * points * 3, positions.len())?;
+    parallel::for_each(out.iter_mut().collect(), positions.len() * 10, |point, out| {
+        let mut planes = Planes::new(3, frames.saturating_sub(1));
+        for c in 0..3 {
+            let path = || positions.iter().skip(point * 3 + c).step_by(points * 3);
+            for ((step, a), b) in planes.row_mut(c).iter_mut().zip(path()).zip(path().skip(1)) {
+                *step = *b - *a;
+            }
+        }
+        *out = T::from_f64(level(planes.rows_mut::<3>(0), &mut Vec::new()));
         Ok(())
     })
 }

@@ -1,0 +1,224 @@
+"""Spikes: samples that leave the motion and come back at once."""
+
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from quatfilt import _validation
+from quatfilt._backend import ops
+from quatfilt._typing import Array, Mask, PerJoint
+from quatfilt.filters import _spans
+
+_LONGEST_RADIUS = 1000
+"""Frames: a run that lasts longer is no spike at any frame rate."""
+
+
+def despike(
+    q: ArrayLike,
+    *,
+    radius: int = 3,
+    threshold: float = 4.0,
+    smallest: PerJoint = 0.105,
+    confidence: ArrayLike | None = None,
+    gaps: _spans.Gaps = "fill",
+    max_gap: float | None = None,
+    fps: float = 1.0,
+    scalar_first: bool = True,
+) -> Array:
+    """Replace spikes, and nothing else.
+
+    A spike is a run of fewer than `radius` samples that leaves the motion and comes back at once. Its samples are far from
+    where the ones before have the joint, resting or moving on, from where the ones after have it, and from the way
+    between them. So are neither steps nor fast swings, impacts or the first moves after a rest: one side explains them.
+    Far is more than `threshold` times what is usual, the median of the same deviation around the run, and at least what
+    noise of the joint's level makes usual; more than `smallest`; and more than the joint moves in two frames.
+
+    Spikes are replaced along the geodesics between the samples beside them. All other samples stay as they are, bit for
+    bit, but for the sign of quaternions.
+
+    Parameters
+    ----------
+    q : array_like, shape (frames, joints, 4) or (frames, 4)
+        Unit quaternions along time. NaN or four zeros are missing samples.
+    radius : int, frames, default 3
+        Spikes are shorter than this; and so many neighbours on either side are asked. From 2 to 1000.
+    threshold : float, default 4.0
+        How many times as far as usual a spike is. Smaller finds more.
+    smallest : float or array_like (joints,), radians of rotation, default 0.105
+        Spikes are larger than this. The default is 6°: recordings of bodies jitter by up to that.
+    confidence : array_like, shape (frames,) or (frames, joints), 0…1, or None, default None
+        Samples of confidence 0 are replaced whatever they are, and nothing is judged by them. A confidence in between is
+        a factor to the threshold.
+    gaps : {"fill", "keep", "raise"}, default "fill"
+        What becomes of missing samples. Filled ones are no spikes, and nothing is judged by them; with ``"keep"`` they
+        are missing again in the result.
+    max_gap : float or None, seconds, default None
+        The longest gap that is filled; None for any. Longer ones stay missing, and their sides are looked at apart.
+    fps : float, hertz, default 1.0
+        Frame rate, for `max_gap`; without it `max_gap` counts frames.
+    scalar_first : bool, default True
+        Whether quaternions are ``(w, x, y, z)``; False for SciPy's ``(x, y, z, w)``.
+
+    Returns
+    -------
+    ndarray, shape of `q`
+        Continuous in sign from the first frame on.
+
+    Raises
+    ------
+    ValueError, TypeError
+        If an argument has another shape, type or range than stated; the message names it.
+
+    See Also
+    --------
+    quatfilt.filters.despike.spikes : The mask of what is replaced.
+    noise_level : The level of noise that is taken into account.
+
+    Notes
+    -----
+    Cost: ``frames · joints · radius``, some 50 ns per sample and thread at the defaults. The first and the last frame have
+    neighbours on one side only and stay.
+
+    References
+    ----------
+    .. [1] F. R. Hampel, "The influence curve and its role in robust estimation", Journal of the American Statistical
+       Association 69, 1974.
+
+    Examples
+    --------
+    >>> import numpy as np, quatfilt as qf
+    >>> t = np.arange(240) / 120
+    >>> swing = qf.exp(0.4 * np.sin(2 * np.pi * t)[:, None] * [0.0, 0.0, 1.0])
+    >>> spoilt = swing.copy()
+    >>> spoilt[100] = qf.multiply(swing[100], qf.exp([0.2, 0.0, 0.0]))
+    >>> clean = qf.despike(spoilt)
+    >>> np.flatnonzero((clean != spoilt).any(axis=-1))
+    array([100])
+    >>> float(np.degrees(qf.geodesic_distance(clean, swing)).max()) < 0.1
+    True
+    """
+    return with_translation(
+        q,
+        None,
+        radius=radius,
+        threshold=threshold,
+        smallest=smallest,
+        confidence=confidence,
+        gaps=gaps,
+        max_gap=max_gap,
+        fps=fps,
+        scalar_first=scalar_first,
+    )[0]
+
+
+def with_translation(
+    q: ArrayLike,
+    translation: Array | None,
+    *,
+    radius: int,
+    threshold: float,
+    smallest: PerJoint,
+    confidence: ArrayLike | None,
+    **missing: Any,
+) -> tuple[Array, Array | None]:
+    """Replace spikes as `despike` does, and those of a translation ``(frames, 3)``, along straight lines.
+
+    The translation is judged by itself, with the confidences of the root and without a smallest distance.
+    """
+    clip = _spans.prepare(q, confidence=confidence, **missing)
+    limits = _limits(clip, radius, threshold, smallest)
+    result, _ = limits.apply(clip)
+    if translation is None:
+        return result, None
+    moved = translation.astype(clip.rotations.dtype)
+    frames, joints = clip.rotations.shape[:2]
+    trust = _validation.confidence(confidence, frames, joints, moved.dtype)
+    root = None if trust is None or trust.size == 0 else np.ascontiguousarray(trust[:, :1])
+    return result, limits.straightened(moved, root)
+
+
+def spikes(
+    q: ArrayLike,
+    *,
+    radius: int = 3,
+    threshold: float = 4.0,
+    smallest: PerJoint = 0.105,
+    confidence: ArrayLike | None = None,
+    max_gap: float | None = None,
+    fps: float = 1.0,
+    scalar_first: bool = True,
+) -> Mask:
+    """Tell which samples `despike` takes for spikes, with the same options.
+
+    Returns
+    -------
+    ndarray of bool, shape (frames, joints) or (frames,)
+        Where samples are spikes. Missing ones and those of confidence 0 are none.
+    """
+    clip = _spans.prepare(
+        q, gaps="fill", max_gap=max_gap, fps=fps, confidence=confidence, scalar_first=scalar_first
+    )
+    _, found = _limits(clip, radius, threshold, smallest).apply(clip)
+    return found.reshape(clip.shape[:-1])
+
+
+@dataclass(frozen=True)
+class _Limits:
+    """What is a spike, checked."""
+
+    radius: int
+    threshold: float
+    smallest: NDArray[np.float64]
+
+    def apply(self, clip: _spans.Clip) -> tuple[Array, Mask]:
+        """Return the finished clip without its spikes, and where they were, ``(frames, joints)``."""
+        found: Mask = np.zeros(clip.rotations.shape[:2], np.bool_)
+
+        def run(rotations: Array, trust: Array | None, span: _spans.Span) -> Array:
+            here = self.find(rotations, trust, self.smallest[span.joints])
+            found[span.frames, span.joints] = here
+            gone = here if trust is None else here | (trust == 0)
+            # A joint that is trusted nowhere has nothing to be replaced by.
+            gone &= ~gone.all(axis=0)
+            return cast("Array", ops().fill_gaps(_without(rotations, gone), -1, "slerp")[0])
+
+        return clip.filter(run), found
+
+    def straightened(self, moved: Array, trust: Array | None) -> Array:
+        """Return positions ``(frames, 3)`` without their spikes, given confidences ``(frames, 1)``."""
+        if len(moved) < 2:
+            return moved
+        found = self.find(np.ascontiguousarray(moved[:, None]), trust, np.zeros(1))
+        gone = (found if trust is None else found | (trust == 0))[:, 0]
+        if not gone.any() or gone.all():
+            return moved
+        frames = np.arange(len(moved))
+        columns = [np.interp(frames[gone], frames[~gone], column[~gone]) for column in moved.T]
+        result = moved.copy()
+        result[gone] = np.stack(columns, axis=1)
+        return result
+
+    def find(self, x: Array, trust: Array | None, smallest: NDArray[np.float64]) -> Mask:
+        """Return where spikes are in rotations ``(frames, joints, 4)`` or positions ``(frames, points, 3)``."""
+        known = x if trust is None or x.shape[-1] == 3 else _without(x, trust == 0)
+        noise = np.asarray(ops().noise_level(known), np.float64)
+        return cast("Mask", ops().find_spikes(x, trust, noise, smallest, self.radius, self.threshold))
+
+
+def _limits(clip: _spans.Clip, radius: int, threshold: float, smallest: PerJoint) -> _Limits:
+    return _Limits(
+        _validation.integer(radius, "radius", at_least=2, at_most=_LONGEST_RADIUS),
+        _validation.number(threshold, "threshold", above=0),
+        _validation.per_joint(smallest, "smallest", clip.rotations.shape[1], at_least=0),
+    )
+
+
+def _without(rotations: Array, gone: Mask) -> Array:
+    known = rotations.copy()
+    known[gone] = np.nan
+    return known
+
+
+__all__ = ["despike", "spikes", "with_translation"]

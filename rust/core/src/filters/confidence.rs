@@ -1,0 +1,101 @@
+//! Confidence for filters that have no weights of their own: doubtful samples give way to their surroundings first.
+
+use super::gaps::{self, Method};
+use crate::error::check_length;
+use crate::rotations::continuity::make_continuous;
+use crate::rotations::quaternion::{dot, geodesic, unit};
+use crate::window::Boundary;
+use crate::{ClipMut, ClipView, Error, Real, parallel};
+
+/// Frames: deviation of the Gaussian with which surroundings weigh.
+const SIGMA: f64 = 2.0;
+
+/// Frames: how far surroundings reach, four deviations.
+const RADIUS: isize = 8;
+
+/// Samples per task.
+const TILE: usize = 8 * 1024;
+
+/// Replaces samples as far as they are not trusted, `(frames, joints, 4)`; `confidence` is `(frames, joints)`.
+///
+/// Samples of confidence 0 are filled in along the geodesics between the others. Samples of a confidence `c` between 0
+/// and 1 move by `1 − c` of the way towards the mean of their surroundings, `Σ_r exp(−r² / 2σ²) c_{t+r} q_{t+r}` made a
+/// unit quaternion, along the path that is continuous in sign, with mirrored ends. Samples of confidence 1 stay as they
+/// are, and so do joints that are trusted nowhere. The result is continuous in sign from the first trusted sample.
+///
+/// # Errors
+/// [`Error::Length`] if the slices do not fit.
+pub fn trusted<T: Real>(q: ClipView<'_, T>, confidence: &[T], out: ClipMut<'_, T>) -> Result<(), Error> {
+    let (frames, joints) = (q.frames(), q.joints());
+    let out = out.into_data();
+    check_length("out", q.data().len(), out.len())?;
+    check_length("confidence", frames * joints, confidence.len())?;
+    if out.is_empty() {
+        return Ok(());
+    }
+    let known = known(q, confidence);
+    let mut filled = vec![false; confidence.len()];
+    let view = ClipView::new(&known, frames, joints)?;
+    gaps::fill_gaps(view, None, Method::Slerp, ClipMut::new(out, frames, joints)?, &mut filled)?;
+    if confidence.iter().all(|&c| c == T::ZERO || c == T::ONE) {
+        return Ok(());
+    }
+    let path = out.to_vec();
+    let path = ClipView::new(&path, frames, joints)?;
+    let length = (TILE / joints).max(1) * joints;
+    let tiles = out.chunks_mut(length * 4).collect();
+    parallel::for_each(tiles, confidence.len() * 20, |tile, out: &mut [T]| {
+        for (i, sample) in out.chunks_exact_mut(4).enumerate() {
+            let at = tile * length + i;
+            let trust = confidence[at].to_f64();
+            if trust > 0.0 && trust < 1.0 {
+                let (frame, joint) = (at / joints, at % joints);
+                let own = unit(path.at(frame, joint).map(T::to_f64));
+                let mean = surroundings(path, confidence, frame, joint);
+                sample.copy_from_slice(&geodesic(own, mean.unwrap_or(own), 1.0 - trust).map(T::from_f64));
+            }
+        }
+        Ok(())
+    })?;
+    make_continuous(out, joints)
+}
+
+/// The clip with NaN where nothing is trusted, in the joints that are trusted somewhere.
+fn known<T: Real>(q: ClipView<'_, T>, confidence: &[T]) -> Vec<T> {
+    let joints = q.joints();
+    let mut trusted = vec![false; joints];
+    for row in confidence.chunks_exact(joints) {
+        for (trusted, &confidence) in trusted.iter_mut().zip(row) {
+            *trusted |= confidence > T::ZERO;
+        }
+    }
+    let mut known = q.data().to_vec();
+    for (at, sample) in known.chunks_exact_mut(4).enumerate() {
+        if confidence[at] == T::ZERO && trusted[at % joints] {
+            sample.fill(T::nan());
+        }
+    }
+    known
+}
+
+/// The mean of the samples around one, weighted by confidence and by nearness in time; `None` if their sum is 0.
+fn surroundings<T: Real>(
+    path: ClipView<'_, T>,
+    confidence: &[T],
+    frame: usize,
+    joint: usize,
+) -> Option<[f64; 4]> {
+    let mut total = [0.0; 4];
+    for r in -RADIUS..=RADIUS {
+        let source = Boundary::Mirror.source(frame.cast_signed() + r, path.frames());
+        let weight = Real::exp(-((r * r) as f64) / (2.0 * SIGMA * SIGMA))
+            * confidence[source * path.joints() + joint].to_f64();
+        if weight > 0.0 {
+            let q = unit(path.at(source, joint).map(T::to_f64));
+            for c in 0..4 {
+                total[c] += weight * q[c];
+            }
+        }
+    }
+    (dot(total, total) > 0.0).then(|| unit(total))
+}
