@@ -323,6 +323,52 @@ def test_sides_of_longer_gaps_are_filtered_apart(max_gap, fps, chart):
         np.testing.assert_array_equal(result[side], alone)
 
 
+NOT_FROM_THE_CLIP = {
+    "denoise": {"bandwidth": 0.05, "chart": "local"},
+    "kalman": {"process_noise": 0.01, "measurement_noise": 0.03},
+    "nonlocal_pose_means": {"bandwidth": 0.05, "chart": "local"},
+    "wavelet": {"threshold": 0.03},
+}
+"""Values for what is otherwise estimated from the whole clip."""
+
+
+@every_filter
+def test_sides_of_longer_gaps_do_not_know_each_other(name):
+    q = clip()
+    gap = q.copy()
+    gap[40:44] = np.nan
+    options = NOT_FROM_THE_CLIP.get(name, {})
+    result = FILTERS[name](gap, max_gap=3, **options)
+    assert np.isnan(result[40:44]).all()
+    for side in (slice(0, 40), slice(44, None)):
+        alone = FILTERS[name](q[side], **options)
+        np.testing.assert_allclose(result[side], alone, rtol=0, atol=tolerances.ALGEBRA)
+
+
+@pytest.mark.parametrize("kind", MISSING)
+@every_filter
+def test_missing_samples_are_hardly_noticed_far_away(name, kind):
+    """Not at all where the filter's window ends; others forget them."""
+    q = clip()
+    options = NOT_FROM_THE_CLIP.get(name, {})
+    result, whole = (FILTERS[name](x, **options) for x in (with_gap(q, kind, 70, 74), q))
+    assert np.isfinite(result).all()
+    recursive = name in ("butterworth", "kalman", "wavelet")
+    assert clips.angles(result[:40], whole[:40]).max() < (0.002 if recursive else tolerances.FLOAT64)
+
+
+@pytest.mark.parametrize(("max_gap", "fps"), [(4, 1), (4 / 120, 120), (0.08, 50), (None, 60)])
+@every_filter
+def test_gaps_are_measured_in_seconds(name, max_gap, fps):
+    """Four frames are filled, five are not."""
+    q = with_gap(with_gap(clip(), "NaN", 20, 24, 0), "zeros", 50, 55, 2)
+    options = {"cutoff": fps / 10} if name == "butterworth" else {}
+    result = FILTERS[name](q, max_gap=max_gap, fps=fps, **options)
+    missing = np.isnan(result).any(axis=-1)
+    assert missing.sum() == (0 if max_gap is None else 5)
+    assert missing[50:55, 2].all() == (max_gap is not None)
+
+
 @every_filter
 def test_a_joint_that_is_never_there(name):
     q = clip()
