@@ -47,8 +47,10 @@ __all__ = [
     "set_num_threads",
     "simd_level",
     "slerp",
+    "smooth",
     "to_euler",
     "trusted",
+    "vectors_noise_level",
     "undevelop",
     "weighted_moving_mean",
     "write_bvh",
@@ -229,6 +231,36 @@ def nonlocal_pose_means_stream(
     /,
 ) -> PoseStream: ...
 
+# filters/savgol
+def savgol(
+    q: Array,
+    translation: Array | None,
+    confidence: Array | None,
+    reference_sigma: NDArray[np.float64],
+    fit: NDArray[np.float64],
+    values: NDArray[np.float64],
+    /,
+) -> tuple[Array, Array | None]: ...
+def savgol_derivative(
+    q: Array,
+    confidence: Array | None,
+    reference_sigma: NDArray[np.float64],
+    fit: NDArray[np.float64],
+    values: NDArray[np.float64],
+    derivatives: NDArray[np.float64],
+    /,
+) -> Array: ...
+
+# filters/smooth
+def smooth(
+    q: Array,
+    translation: Array | None,
+    confidence: Array | None,
+    noise: NDArray[np.float64],
+    translation_noise: float,
+    /,
+) -> tuple[Array, Array | None]: ...
+
 # filters/weighted_moving_mean
 def weighted_moving_mean(
     q: Array,
@@ -262,6 +294,7 @@ def forward_kinematics_moving(
 
 # noise/noise
 def noise_level(q: Array, /) -> Array: ...
+def vectors_noise_level(x: Array, /) -> float: ...
 
 # rotations/continuity
 def continuous(q: Array, /) -> Array: ...

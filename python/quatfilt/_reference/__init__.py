@@ -24,8 +24,9 @@ from quatfilt._reference.filters.one_euro import one_euro
 from quatfilt._reference.filters.orientation_filter import orientation_filter
 from quatfilt._reference.filters.savgol import savgol, savgol_derivative
 from quatfilt._reference.filters.weighted_moving_mean import weighted_moving_mean
+from quatfilt._reference.filters.smooth.smooth import smooth
 from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
-from quatfilt._reference.noise.noise import noise_level
+from quatfilt._reference.noise.noise import noise_level, vectors_noise_level
 from quatfilt._reference.rotations.euler import continuous_euler, from_euler, to_euler
 from quatfilt._reference.rotations.mean import mean
 from quatfilt._reference.rotations.quaternion import (
@@ -71,8 +72,10 @@ __all__ = [
     "savgol_derivative",
     "scan",
     "slerp",
+    "smooth",
     "to_euler",
     "trusted",
+    "vectors_noise_level",
     "undevelop",
     "weighted_moving_mean",
 ]

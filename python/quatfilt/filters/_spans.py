@@ -54,6 +54,15 @@ class Clip:
         """Whether the clip is too short to be filtered."""
         return len(self.rotations) < 2 or self.rotations.size == 0
 
+    @property
+    def observed(self) -> Array:
+        """The rotations without those that were filled in: what noise is measured on."""
+        if not self.missing.any():
+            return self.rotations
+        rotations = self.rotations.copy()
+        rotations[self.missing] = np.nan
+        return rotations
+
     def finish(self, rotations: Array) -> Array:
         """Return a result in the shape and order of the input, with gaps kept if that was asked for."""
         if self.gaps == "keep" and not self.unchanged:

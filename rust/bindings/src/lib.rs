@@ -44,6 +44,10 @@ mod _core {
     #[pymodule_export]
     use super::filters::stream::nonlocal_pose_means::nonlocal_pose_means_stream;
     #[pymodule_export]
+    use super::filters::savgol::{savgol, savgol_derivative};
+    #[pymodule_export]
+    use super::filters::smooth::smooth;
+    #[pymodule_export]
     use super::filters::weighted_moving_mean::weighted_moving_mean;
     #[pymodule_export]
     use super::formats::FormatError;
@@ -54,7 +58,7 @@ mod _core {
     #[pymodule_export]
     use super::motion::skeleton::{forward_kinematics, forward_kinematics_moving};
     #[pymodule_export]
-    use super::noise::noise::noise_level;
+    use super::noise::noise::{noise_level, vectors_noise_level};
     #[pymodule_export]
     use super::rotations::continuity::continuous;
     #[pymodule_export]

@@ -17,4 +17,5 @@ pub mod orientation_filter;
 mod samples;
 pub mod savgol;
 pub mod stream;
+pub mod smooth;
 pub mod weighted_moving_mean;
