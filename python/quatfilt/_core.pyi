@@ -48,6 +48,7 @@ __all__ = [
     "simd_level",
     "slerp",
     "smooth",
+    "smooth_body",
     "to_euler",
     "trusted",
     "vectors_noise_level",
@@ -260,6 +261,9 @@ def smooth(
     translation_noise: float,
     /,
 ) -> tuple[Array, Array | None]: ...
+def smooth_body(
+    q: Array, pilot: Array, confidence: Array | None, noise: NDArray[np.float64], /
+) -> Array: ...
 
 # filters/weighted_moving_mean
 def weighted_moving_mean(

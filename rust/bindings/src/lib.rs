@@ -46,7 +46,7 @@ mod _core {
     #[pymodule_export]
     use super::filters::savgol::{savgol, savgol_derivative};
     #[pymodule_export]
-    use super::filters::smooth::smooth;
+    use super::filters::smooth::{smooth, smooth_body};
     #[pymodule_export]
     use super::filters::weighted_moving_mean::weighted_moving_mean;
     #[pymodule_export]

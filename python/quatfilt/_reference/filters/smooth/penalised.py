@@ -8,6 +8,19 @@ import math
 import numpy as np
 
 from quatfilt._reference._arrays import Reals
+from quatfilt._reference.filters.smooth.strength import strength
+
+
+def penalised_column(z: Reals, weights: Reals) -> Reals:
+    """Smooth a column of unit noise `(frames,)`, at least two, as strongly as :func:`.strength.strength` asks for."""
+    found = strength(z)
+    rows = len(z) - found.order
+    if rows < 1:
+        return z
+    # A difference of order o spans o + 1 frames; the cut-off is that of the middle one.
+    middle = found.order // 2
+    softness = found.cutoff[middle : middle + rows] ** found.order
+    return penalised(z, weights, softness, found.order)
 
 
 def penalised(z: Reals, weights: Reals, softness: Reals, order: int) -> Reals:

@@ -11,8 +11,7 @@ from quatfilt._reference.filters.development import (
     undevelop,
     weighted_mean,
 )
-from quatfilt._reference.filters.smooth.penalised import penalised
-from quatfilt._reference.filters.smooth.strength import strength
+from quatfilt._reference.filters.smooth.penalised import penalised_column
 from quatfilt._reference.rotations.quaternion import exp, multiply, normalize
 
 REFERENCE_SIGMA = 6.0
@@ -89,20 +88,10 @@ def smoothed(vectors: Reals, mean: Reals, weights: Reals, noise: float) -> Reals
     axes = principal_axes(np.diff(mean, axis=0))
     columns = vectors @ axes / noise
     trust = np.maximum(weights, LEAST_WEIGHT)
-    result = np.empty_like(columns)
-    for axis in range(3):
-        found = strength(columns[:, axis])
-        rows = len(columns) - found.order
-        if rows < 1:
-            result[:, axis] = columns[:, axis]
-            continue
-        # A difference of order o spans o + 1 frames; the cut-off is that of the middle one.
-        middle = found.order // 2
-        softness = found.cutoff[middle : middle + rows] ** found.order
-        result[:, axis] = penalised(columns[:, axis], trust, softness, found.order)
+    result = np.stack([penalised_column(column, trust) for column in columns.T], axis=1)
     return np.asarray(result @ axes.T * noise)
 
 
 def principal_axes(steps: Reals) -> Reals:
-    """Orthonormal axes of steps `(n, 3)`, as columns: the eigenvectors of `Σ s sᵀ`."""
+    """Orthonormal axes of steps `(n, k)`, as columns: the eigenvectors of `Σ s sᵀ`."""
     return np.asarray(np.linalg.eigh(steps.T @ steps)[1])

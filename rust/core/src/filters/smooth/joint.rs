@@ -2,7 +2,7 @@
 
 use super::axes;
 use super::penalised::{HIGHEST, Memory, penalised};
-use super::strength::Candidates;
+use super::strength::{self, Candidates};
 use crate::Error;
 use crate::Real;
 use crate::clip::Planes;
@@ -14,6 +14,9 @@ use crate::simd::multiversion;
 /// out in a long gap, and beyond the end of the clip.
 const LEAST_WEIGHT: f64 = 0.01;
 
+/// Planes that a column needs beside itself: its softness, and the memory of the solver.
+const PER_COLUMN: usize = 3 + HIGHEST;
+
 /// Smooths vectors in place.
 pub(super) fn smooth(
     columns: &mut Columns<'_>,
@@ -24,26 +27,21 @@ pub(super) fn smooth(
 ) -> Result<(), Error> {
     let frames = columns.frames;
     let axes = axes::of_steps(columns.mean.map(|mean| &mean[..frames]));
-    spare.reshape(7 + HIGHEST + 3, columns.vectors[0].len());
-    let [z, variances, softness, solution, pivots, a, b, c, results @ ..] = spare.rows_mut::<11>(0);
+    spare.reshape(5 + PER_COLUMN, columns.vectors[0].len());
+    let [z, variances, a, b, c, solver @ ..] = spare.rows_mut::<{ 5 + PER_COLUMN }>(0);
     variances.fill(1.0);
     if let Some(trust) = columns.trust {
         inverses(trust, LEAST_WEIGHT, variances);
     }
-    let mut memory = Memory { solution, pivots, lower: [a, b, c] };
-    let mut choice = candidates.memory();
-    let mut results = results;
+    let mut results = [a, b, c];
     for result in &mut results {
         result.fill(0.0);
     }
+    let mut solver = Solver::new(solver, candidates);
     for direction in axes {
         let vectors = columns.vectors.each_ref().map(|plane| &**plane);
         project(vectors, direction.map(|x| x / noise), z);
-        let order = candidates.choose(&z[..frames], softness, &mut choice);
-        if frames > order {
-            let softness = &softness[..frames - order];
-            penalised(order, &mut z[..frames], &variances[..frames], softness, &mut memory, interrupt)?;
-        }
+        solver.smooth(&mut z[..frames], &variances[..frames], candidates, interrupt)?;
         for (result, x) in results.iter_mut().zip(direction) {
             add_scaled(z, x * noise, result);
         }
@@ -52,6 +50,48 @@ pub(super) fn smooth(
         vector[..frames].copy_from_slice(&result[..frames]);
     }
     Ok(())
+}
+
+/// Smooths a column of unit noise in place.
+pub(super) fn smooth_column(
+    column: &mut [f64],
+    candidates: &Candidates,
+    spare: &mut Planes<f64>,
+    interrupt: &Interrupt,
+) -> Result<(), Error> {
+    spare.reshape(1 + PER_COLUMN, column.len());
+    let [variances, solver @ ..] = spare.rows_mut::<{ 1 + PER_COLUMN }>(0);
+    variances.fill(1.0);
+    Solver::new(solver, candidates).smooth(column, variances, candidates, interrupt)
+}
+
+/// Memory for the way from a column of unit noise to a smooth one.
+struct Solver<'a> {
+    softness: &'a mut [f64],
+    memory: Memory<'a>,
+    choice: strength::Memory,
+}
+
+impl<'a> Solver<'a> {
+    fn new(planes: [&'a mut [f64]; PER_COLUMN], candidates: &Candidates) -> Self {
+        let [softness, solution, pivots, lower @ ..] = planes;
+        Self { softness, memory: Memory { solution, pivots, lower }, choice: candidates.memory() }
+    }
+
+    fn smooth(
+        &mut self,
+        z: &mut [f64],
+        variances: &[f64],
+        candidates: &Candidates,
+        interrupt: &Interrupt,
+    ) -> Result<(), Error> {
+        let order = candidates.choose(z, self.softness, &mut self.choice);
+        if z.len() <= order {
+            return Ok(());
+        }
+        let softness = &self.softness[..z.len() - order];
+        penalised(order, z, variances, softness, &mut self.memory, interrupt)
+    }
 }
 
 multiversion! {
@@ -77,11 +117,12 @@ multiversion! {
 }
 
 multiversion! {
-    fn add_scaled<T: Real>(values: &[T], scale: T, sums: &mut [T]) {
+    /// Adds values times a factor to sums.
+    pub(super) fn add_scaled<T: Real>(values: &[T], factor: T, sums: &mut [T]) {
         let n = sums.len();
         let values = &values[..n];
         for i in 0..n {
-            sums[i] += scale * values[i];
+            sums[i] += factor * values[i];
         }
     }
 }

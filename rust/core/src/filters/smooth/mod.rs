@@ -7,9 +7,13 @@
 //! - `axes`: principal axes;
 //! - `spectrum`, `strength`: how much to smooth;
 //! - `penalised`: the smoother;
-//! - `joint`: one joint along its axes.
+//! - `joint`: one joint along its axes;
+//! - `about`: the vectors of all joints about a pilot;
+//! - `body`: all joints together along the axes of the body.
 
+mod about;
 mod axes;
+mod body;
 mod joint;
 mod penalised;
 mod spectrum;
@@ -20,6 +24,8 @@ use crate::Error;
 use crate::clip::Planes;
 use crate::error::check_length;
 use crate::parallel::Interrupt;
+pub use about::Noisy;
+pub use body::smooth_body;
 use strength::Candidates;
 
 /// Deviation in frames of the Gaussian mask that makes the first reference path.
