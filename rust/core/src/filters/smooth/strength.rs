@@ -191,7 +191,8 @@ impl Candidates {
     fn interpolate(&self, settled: &[f64], order: usize, softness: &mut [f64]) {
         let power = order as f64;
         let middle = order / 2;
-        let rows = self.frames - order;
+        // Two frames have no third difference.
+        let rows = self.frames.saturating_sub(order);
         let centre = |block: usize| self.starts[block] as f64 + (self.block - 1) as f64 / 2.0;
         let mut after = 0;
         for (row, softness) in softness[..rows].iter_mut().enumerate() {
