@@ -18,4 +18,5 @@ mod samples;
 pub mod savgol;
 pub mod stream;
 pub mod smooth;
+pub mod stream;
 pub mod weighted_moving_mean;

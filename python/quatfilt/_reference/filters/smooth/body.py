@@ -5,19 +5,28 @@ import numpy as np
 from quatfilt._reference._arrays import Reals
 from quatfilt._reference.filters.development import developed_about, undevelop
 from quatfilt._reference.filters.smooth.penalised import penalised_column
-from quatfilt._reference.filters.smooth.smooth import principal_axes
+from quatfilt._reference.filters.smooth.smooth import LEAST_NOISE
 from quatfilt._reference.rotations.quaternion import normalize
 
 SHARE = 0.5
 """Share of the body's estimate beside the pilot. The one errs where joints are alike by chance, the other where they are not seen
 together; their mean errs less than either."""
 
+FEWEST = 3
+"""Frames per axis, at least. In shorter clips the axes follow what the pilot has left of the noise, which then looks like motion:
+with as many frames as axes the step loses up to 2 dB, with three times as many it gains."""
+
+STILL = 0.03
+"""Sum of squares of the pilot's steps along an axis, in units of the noise, below which the axis is left to the pilot: such steps
+are noise themselves, and the directions of axes without steps are chance."""
+
 
 def smooth_body(q: Reals, pilot: Reals, confidence: Reals | None, noise: Reals) -> Reals:
     """Smooth all joints together along the principal axes of the body, and take the mean with the pilot.
 
     The vectors of all joints about the pilot, in units of their noise, make one vector of a pose; its axes are those of the pilot's
-    steps from frame to frame. Each axis is smoothed as :func:`.smooth.smooth` smooths that of a joint.
+    steps from frame to frame. Each axis along which the pilot moves is smoothed as :func:`.smooth.smooth` smooths that of a joint.
+    In clips of fewer than `FEWEST` frames per axis the pilot stays as it is.
 
     Parameters
     ----------
@@ -36,9 +45,10 @@ def smooth_body(q: Reals, pilot: Reals, confidence: Reals | None, noise: Reals) 
         Unit quaternions, continuous in sign from the hemisphere of the first frame of `q`.
     """
     frames = len(q)
-    noisy = np.flatnonzero(noise > 0)
-    if frames < 2 or len(noisy) == 0:
-        return normalize(pilot)
+    noisy = np.flatnonzero(noise >= LEAST_NOISE)
+    if len(noisy) == 0 or frames < FEWEST * 3 * len(noisy):
+        still = np.zeros((*q.shape[:2], 3))
+        return undevelop(q, normalize(pilot.astype(np.float64)), still, still)
     path, about = (normalize(x.astype(np.float64)) for x in (q, pilot))
     reference, development, vectors = developed_about(about, path)
     if confidence is not None:
@@ -46,10 +56,17 @@ def smooth_body(q: Reals, pilot: Reals, confidence: Reals | None, noise: Reals) 
     scale = noise[noisy, None]
     poses = (vectors[:, noisy] / scale).reshape(frames, -1)
     mean = (development[:, noisy] / scale).reshape(frames, -1)
-    axes = principal_axes(np.diff(mean, axis=0))
-    columns = poses @ axes
-    smoothed = np.stack([penalised_column(column, np.ones(frames)) for column in columns.T], axis=1)
-    moved = (smoothed @ axes.T).reshape(frames, len(noisy), 3) * scale
+    axes = moving_axes(np.diff(mean, axis=0))
+    change = np.zeros_like(poses)
+    for axis in axes.T:
+        smoothed = penalised_column(poses @ axis, np.ones(frames))
+        change += np.outer(smoothed - mean @ axis, axis)
     result = development.copy()
-    result[:, noisy] += SHARE * (moved - development[:, noisy])
+    result[:, noisy] += SHARE * change.reshape(frames, len(noisy), 3) * scale
     return undevelop(q, reference, development, result)
+
+
+def moving_axes(steps: Reals) -> Reals:
+    """Principal axes of steps `(n, k)` along which there are more than still ones, as columns."""
+    squares, axes = np.linalg.eigh(steps.T @ steps)
+    return np.asarray(axes[:, squares > STILL])

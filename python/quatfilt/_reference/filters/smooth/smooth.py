@@ -21,6 +21,9 @@ ROUNDS = 2
 """How often the clip is smoothed about a reference path. The second is the result of the first: nearer to the truth, it bends
 the noise less and shows the axes better."""
 
+LEAST_NOISE = 1e-100
+"""Whatever is measured in less noise has squares that may be infinite; such noise counts as none."""
+
 LEAST_WEIGHT = 0.01
 """Weight of a sample without confidence. The line between its neighbours that stands for it keeps the smoother from swinging
 far out in a long gap, and beyond the end of the clip."""
@@ -83,7 +86,7 @@ def smooth(
 
 def smoothed(vectors: Reals, mean: Reals, weights: Reals, noise: float) -> Reals:
     """Smooth vectors `(frames, 3)` along the principal axes of the steps of their local mean."""
-    if noise == 0:
+    if noise < LEAST_NOISE:
         return vectors
     axes = principal_axes(np.diff(mean, axis=0))
     columns = vectors @ axes / noise

@@ -1,5 +1,6 @@
 //! The vectors of all joints about a pilot, and the way back.
 
+use super::LEAST_NOISE;
 use crate::clip::Planes;
 use crate::error::check_length;
 use crate::filters::columns::BLOCK;
@@ -52,7 +53,8 @@ impl<T: Real> Noisy<'_, T> {
     /// The vectors of the joints that are noisy.
     pub(super) fn vectors(&self, interrupt: &Interrupt) -> Result<About, Error> {
         let frames = self.clip.frames();
-        let joints: Vec<usize> = (0..self.clip.joints()).filter(|&joint| self.noise[joint] > 0.0).collect();
+        let joints: Vec<usize> =
+            (0..self.clip.joints()).filter(|&joint| self.noise[joint] >= LEAST_NOISE).collect();
         let planes = parallel::map(joints.clone(), frames * joints.len() * 60, |_, joint| {
             interrupt.check()?;
             Ok(self.joint(joint))

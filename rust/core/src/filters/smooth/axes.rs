@@ -1,11 +1,14 @@
 //! Principal axes: eigenvectors of small symmetric matrices.
 
+use crate::Error;
+use crate::parallel::Interrupt;
+
 /// Sweeps at most; each one squares what is left beside the diagonal.
 const SWEEPS: usize = 30;
 
 /// Eigenvectors of a symmetric matrix of `n` rows, as columns, by Jacobi's rotations. `matrix` ends up with the eigenvalues on
 /// its diagonal.
-pub(super) fn eigenvectors(matrix: &mut [f64], n: usize) -> Vec<f64> {
+pub(super) fn eigenvectors(matrix: &mut [f64], n: usize, interrupt: &Interrupt) -> Result<Vec<f64>, Error> {
     let mut vectors = vec![0.0; n * n];
     for i in 0..n {
         vectors[i * n + i] = 1.0;
@@ -13,6 +16,7 @@ pub(super) fn eigenvectors(matrix: &mut [f64], n: usize) -> Vec<f64> {
     for _ in 0..SWEEPS {
         let mut turned = false;
         for p in 0..n {
+            interrupt.check()?;
             for q in p + 1..n {
                 let beside = matrix[p * n + q];
                 let (a, b) = (matrix[p * n + p], matrix[q * n + q]);
@@ -33,7 +37,7 @@ pub(super) fn eigenvectors(matrix: &mut [f64], n: usize) -> Vec<f64> {
             break;
         }
     }
-    vectors
+    Ok(vectors)
 }
 
 fn rotate_columns(matrix: &mut [f64], n: usize, (p, q): (usize, usize), (cosine, sine): (f64, f64)) {
@@ -52,7 +56,7 @@ fn rotate_rows(matrix: &mut [f64], n: usize, (p, q): (usize, usize), (cosine, si
 }
 
 /// Directions of the principal axes of the steps of three planes from frame to frame.
-pub(super) fn of_steps(path: [&[f64]; 3]) -> [[f64; 3]; 3] {
+pub(super) fn of_steps(path: [&[f64]; 3], interrupt: &Interrupt) -> Result<[[f64; 3]; 3], Error> {
     let mut products = [0.0; 9];
     for t in 1..path[0].len() {
         let step = path.map(|plane| plane[t] - plane[t - 1]);
@@ -62,8 +66,8 @@ pub(super) fn of_steps(path: [&[f64]; 3]) -> [[f64; 3]; 3] {
             }
         }
     }
-    let axes = eigenvectors(&mut products, 3);
-    std::array::from_fn(|axis| std::array::from_fn(|i| axes[i * 3 + axis]))
+    let axes = eigenvectors(&mut products, 3, interrupt)?;
+    Ok(std::array::from_fn(|axis| std::array::from_fn(|i| axes[i * 3 + axis])))
 }
 
 #[cfg(test)]
@@ -76,7 +80,7 @@ mod tests {
         let entry = |i: usize, j: usize| ((i * j + i + j) % 7) as f64 + if i == j { 3.0 } else { 0.0 };
         let original: Vec<f64> = (0..n * n).map(|at| entry(at / n, at % n)).collect();
         let mut matrix = original.clone();
-        let vectors = eigenvectors(&mut matrix, n);
+        let vectors = eigenvectors(&mut matrix, n, &Interrupt::new()).expect("nobody interrupts");
         for a in 0..n {
             for b in 0..n {
                 let product: f64 = (0..n).map(|i| vectors[i * n + a] * vectors[i * n + b]).sum();

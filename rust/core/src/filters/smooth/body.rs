@@ -1,5 +1,6 @@
 //! Smoothing along the principal axes of the whole body: joints that move together steady each other.
 
+use super::LEAST_NOISE;
 use super::about::{About, Noisy};
 use super::axes;
 use super::joint;
@@ -8,13 +9,18 @@ use crate::clip::Planes;
 use crate::error::check_length;
 use crate::filters::columns::BLOCK;
 use crate::parallel::{self, Interrupt};
-use crate::rotations::quaternion;
 use crate::simd::multiversion;
 use crate::{ClipMut, Error, Real};
 use std::sync::Mutex;
 
 /// Share of the body's estimate beside the pilot.
 const SHARE: f64 = 0.5;
+
+/// Frames per axis, at least: the axes of shorter clips are those of the noise that the pilot has left.
+const FEWEST: usize = 3;
+
+/// Sum of squares of the pilot's steps along an axis, in units of the noise, below which the axis is left to the pilot.
+const STILL: f64 = 0.03;
 
 /// Frames per task where poses are turned: the poses of a body stay in the second-level cache.
 const TASK: usize = 8 * BLOCK;
@@ -32,52 +38,55 @@ pub fn smooth_body<T: Real>(
     let frames = noisy.clip.frames();
     let out = out.into_data();
     check_length("out", noisy.clip.data().len(), out.len())?;
-    if frames < 2 || noisy.noise.iter().all(|&noise| noise <= 0.0) {
-        return quaternion::normalize(noisy.pilot.data(), out);
+    if out.is_empty() {
+        return Ok(());
     }
-    let About { joints, mean, beside } = noisy.vectors(interrupt)?;
-    let width = joints.len() * 3;
-    let axes = body_axes(&mean, frames, interrupt)?;
-    // Rows of the matrix are the axes from here on.
-    let transposed: Vec<f64> = (0..width * width).map(|at| axes[at % width * width + at / width]).collect();
-    let mut poses = turned(&transposed, width, frames, interrupt, |plane, range, block| {
-        let (joint, c) = (plane / 3, plane % 3);
-        let (mean, beside) = (&mean[joint].row(c)[range.clone()], &beside[joint].row(c)[range]);
-        for ((out, mean), beside) in block.iter_mut().zip(mean).zip(beside) {
-            *out = mean + beside;
-        }
-    })?;
+    let width = 3 * noisy.noise.iter().filter(|&&noise| noise >= LEAST_NOISE).count();
+    if width == 0 || frames < FEWEST * width {
+        return noisy.moved(&[], &[], out);
+    }
+    let About { joints, mut mean, beside } = noisy.vectors(interrupt)?;
+    let axes = moving_axes(&mean, frames, interrupt)?;
+    if axes.is_empty() {
+        return noisy.moved(&[], &[], out);
+    }
+    let along = |planes: &[Planes<f64>]| {
+        turned(&axes, width, frames, interrupt, |plane, range, block| {
+            block[..range.len()].copy_from_slice(&planes[plane / 3].row(plane % 3)[range]);
+        })
+    };
+    let pilot = along(&mean)?;
+    let mut columns = along(&beside)?;
     let candidates = Candidates::new(frames);
     let kept: Mutex<Vec<Planes<f64>>> = Mutex::default();
-    let columns: Vec<&mut Vec<f64>> = poses.iter_mut().collect();
-    parallel::for_each(columns, frames * width * 150, |_, column| {
+    let tasks: Vec<_> = columns.iter_mut().zip(&pilot).collect();
+    parallel::for_each(tasks, frames * pilot.len() * 150, |_, (column, pilot)| {
         let mut spare = kept.lock().map_or(None, |mut kept| kept.pop()).unwrap_or_default();
+        joint::add_scaled(pilot, 1.0, column);
         joint::smooth_column(column, &candidates, &mut spare, interrupt)?;
+        joint::add_scaled(pilot, -1.0, column);
         if let Ok(mut kept) = kept.lock() {
             kept.push(spare);
         }
         Ok(())
     })?;
-    let moved = turned(&axes, width, frames, interrupt, |plane, range, block| {
-        block[..range.len()].copy_from_slice(&poses[plane][range]);
+    let moving = columns.len();
+    // Back from the axes: what were columns of the matrix are its rows.
+    let back: Vec<f64> =
+        (0..width * moving).map(|at| SHARE * axes[at % moving * width + at / moving]).collect();
+    let moved = turned(&back, moving, frames, interrupt, |plane, range, block| {
+        block[..range.len()].copy_from_slice(&columns[plane][range]);
     })?;
-    let by: Vec<Planes<f64>> = mean
-        .into_iter()
-        .enumerate()
-        .map(|(joint, mut mean)| {
-            for (c, plane) in mean.rows_mut::<3>(0).into_iter().enumerate() {
-                for (mean, moved) in plane.iter_mut().zip(&moved[joint * 3 + c]) {
-                    *mean = SHARE * (moved - *mean);
-                }
-            }
-            mean
-        })
-        .collect();
-    noisy.moved(&joints, &by, out)
+    for (joint, by) in mean.iter_mut().enumerate() {
+        for (c, plane) in by.rows_mut::<3>(0).into_iter().enumerate() {
+            plane[..frames].copy_from_slice(&moved[joint * 3 + c]);
+        }
+    }
+    noisy.moved(&joints, &mean, out)
 }
 
-/// Principal axes of the steps of all planes from frame to frame, as columns of a matrix.
-fn body_axes(mean: &[Planes<f64>], frames: usize, interrupt: &Interrupt) -> Result<Vec<f64>, Error> {
+/// Principal axes of the steps of all planes from frame to frame, but for the still ones: rows of a matrix.
+fn moving_axes(mean: &[Planes<f64>], frames: usize, interrupt: &Interrupt) -> Result<Vec<f64>, Error> {
     let width = mean.len() * 3;
     let tasks: Vec<usize> = (0..frames - 1).step_by(TASK).collect();
     let parts = parallel::map(tasks, frames * width * width / 8, |_, start| {
@@ -109,10 +118,13 @@ fn body_axes(mean: &[Planes<f64>], frames: usize, interrupt: &Interrupt) -> Resu
             products[j * width + i] = products[i * width + j];
         }
     }
-    Ok(axes::eigenvectors(&mut products, width))
+    let axes = axes::eigenvectors(&mut products, width, interrupt)?;
+    let moving = (0..width).filter(|&axis| products[axis * width + axis] > STILL);
+    Ok(moving.flat_map(|axis| axes.iter().skip(axis).step_by(width)).copied().collect())
 }
 
-/// Products of a matrix with poses, whose planes `load` writes for a range of frames; one column for each row of the matrix.
+/// Products of a matrix of rows of `width` numbers with poses, whose planes `load` writes for a range of frames; one column for
+/// each row of the matrix.
 fn turned(
     matrix: &[f64],
     width: usize,
@@ -120,17 +132,18 @@ fn turned(
     interrupt: &Interrupt,
     load: impl Fn(usize, std::ops::Range<usize>, &mut [f64]) + Sync,
 ) -> Result<Vec<Vec<f64>>, Error> {
-    let mut columns = vec![vec![0.0; frames]; width];
+    let rows = matrix.len() / width;
+    let mut columns = vec![vec![0.0; frames]; rows];
     let mut tasks: Vec<Vec<&mut [f64]>> = Vec::new();
     for column in &mut columns {
         for (task, part) in column.chunks_mut(TASK).enumerate() {
             if tasks.len() <= task {
-                tasks.push(Vec::with_capacity(width));
+                tasks.push(Vec::with_capacity(rows));
             }
             tasks[task].push(part);
         }
     }
-    parallel::for_each(tasks, frames * width * width / 4, |task, mut parts| {
+    parallel::for_each(tasks, frames * width * rows / 4, |task, mut parts| {
         interrupt.check()?;
         let start = task * TASK;
         let range = start..(start + TASK).min(frames);

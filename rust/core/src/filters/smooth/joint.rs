@@ -26,7 +26,7 @@ pub(super) fn smooth(
     interrupt: &Interrupt,
 ) -> Result<(), Error> {
     let frames = columns.frames;
-    let axes = axes::of_steps(columns.mean.map(|mean| &mean[..frames]));
+    let axes = axes::of_steps(columns.mean.map(|mean| &mean[..frames]), interrupt)?;
     spare.reshape(5 + PER_COLUMN, columns.vectors[0].len());
     let [z, variances, a, b, c, solver @ ..] = spare.rows_mut::<{ 5 + PER_COLUMN }>(0);
     variances.fill(1.0);

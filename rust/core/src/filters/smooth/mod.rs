@@ -31,6 +31,9 @@ use strength::Candidates;
 /// Deviation in frames of the Gaussian mask that makes the first reference path.
 pub const REFERENCE_SIGMA: f64 = 6.0;
 
+/// Whatever is measured in less noise has squares that may be infinite; such noise counts as none.
+const LEAST_NOISE: f64 = 1e-100;
+
 /// How often the clip is smoothed about a reference path.
 const ROUNDS: usize = 2;
 
@@ -62,7 +65,7 @@ impl Smoother {
         interrupt: &Interrupt,
     ) -> Result<(), Error> {
         match &self.candidates {
-            Some(candidates) if noise > 0.0 => {
+            Some(candidates) if noise >= LEAST_NOISE => {
                 joint::smooth(&mut columns, noise, candidates, spare, interrupt)
             }
             _ => Ok(()),
