@@ -7,8 +7,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from quatfilt import _validation
 from quatfilt._backend import ops
-from quatfilt._typing import Array, PerJoint
+from quatfilt._typing import Array, Mask, PerJoint
 from quatfilt.filters import _development, _spans
+
+_STRONGEST = 1e6
+"""Far below it already, nothing is left but a constant or a polynomial."""
 
 
 def smooth(
@@ -36,7 +39,7 @@ def smooth(
     q : array_like, shape (frames, joints, 4) or (frames, 4)
         Unit quaternions along time. NaN or four zeros are missing samples.
     strength : float or array_like (joints,), default 1.0
-        By how much more noise is taken for granted than the clip is estimated to have; 0 changes nothing.
+        By how much more noise is taken for granted than the clip is estimated to have, up to 1e6; 0 changes nothing.
     confidence : array_like or None, shape (frames,) or (frames, joints), default None
         Weights of the samples, from 0 to 1; NaN counts as 0. Samples that were filled in have 0. What has 0 is filled in from
         its neighbours, and counts as a hundredth.
@@ -104,23 +107,40 @@ def with_translation(
 ) -> tuple[Array, Array | None]:
     """Smooth as `smooth` does, and a translation ``(frames, 3)`` by its own noise and with the strength of joint 0."""
     clip = _spans.prepare(q, **missing)
-    scale = _validation.per_joint(strength, "strength", clip.rotations.shape[1], at_least=0)
+    scale = _validation.per_joint(strength, "strength", clip.rotations.shape[1], at_least=0, at_most=_STRONGEST)
     noise = np.zeros_like(scale)
-    if not clip.unchanged:
-        noise = scale * ops().noise_level(clip.observed).astype(np.float64)
     position_noise = 0.0
-    if translation is not None and len(scale):
-        position_noise = float(scale[0]) * ops().vectors_noise_level(translation)
+    if not clip.unchanged:
+        noise = scale * ops().noise_level(clip.trusted).astype(np.float64)
+        if translation is not None:
+            position_noise = float(scale[0]) * ops().vectors_noise_level(_trusted_part(translation, clip))
 
     def run(
         rotations: Array, along: Array | None, trust: Array | None, there: NDArray[np.intp]
     ) -> tuple[Array, Array | None]:
         if trust is not None:
             rotations = _without_untrusted(rotations, trust)
+            along = None if along is None else _straightened(along, trust[:, 0] > 0)
         result = ops().smooth(rotations, along, trust, noise[there], position_noise)
         return cast("tuple[Array, Array | None]", result)
 
     return _development.filtered(clip, translation, run)
+
+
+def _trusted_part(translation: Array, clip: _spans.Clip) -> Array:
+    """Return a translation, NaN where nobody trusts the pose of the root."""
+    if clip.confidence is None:
+        return translation
+    return np.where(clip.confidence[:, :1] > 0, translation, np.nan).astype(translation.dtype)
+
+
+def _straightened(translation: Array, trusted: Mask) -> Array:
+    """Lead a translation along straight lines where nobody trusts it, if it is trusted anywhere."""
+    if trusted.all() or not trusted.any():
+        return translation
+    frames = np.arange(len(translation))
+    columns = [np.interp(frames, frames[trusted], column[trusted]) for column in translation.T]
+    return np.stack(columns, axis=1).astype(translation.dtype)
 
 
 def _without_untrusted(rotations: Array, trust: Array) -> Array:

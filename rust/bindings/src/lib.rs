@@ -38,15 +38,13 @@ mod _core {
     #[pymodule_export]
     use super::filters::savgol::{savgol, savgol_derivative};
     #[pymodule_export]
+    use super::filters::smooth::{smooth, smooth_body};
+    #[pymodule_export]
     use super::filters::stream::PoseStream;
     #[pymodule_export]
     use super::filters::stream::bilateral::bilateral_stream;
     #[pymodule_export]
     use super::filters::stream::nonlocal_pose_means::nonlocal_pose_means_stream;
-    #[pymodule_export]
-    use super::filters::savgol::{savgol, savgol_derivative};
-    #[pymodule_export]
-    use super::filters::smooth::{smooth, smooth_body};
     #[pymodule_export]
     use super::filters::weighted_moving_mean::weighted_moving_mean;
     #[pymodule_export]

@@ -54,7 +54,7 @@ def vectors_noise_level(x: Reals) -> float:
     Parameters
     ----------
     x : array (frames, 3)
-        Positions.
+        Positions; differences that touch a row of NaN are left out.
     """
     steps = np.diff(x.astype(np.float64), axis=0)[:, None]
     level = float(np.min([level_of_order(steps, order) for order in ORDERS]))

@@ -15,4 +15,5 @@ pub(crate) mod orientation_filter;
 pub(crate) mod savgol;
 pub(crate) mod stream;
 pub(crate) mod smooth;
+pub(crate) mod stream;
 pub(crate) mod weighted_moving_mean;

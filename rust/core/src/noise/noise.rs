@@ -114,6 +114,7 @@ fn level<T: Real>(planes: [&mut [T]; 3], buffer: &mut Vec<T>) -> f64 {
 }
 
 /// Estimates the deviation of white noise per coordinate of a path `(frames, 3)`, as [`noise_level`] does for rotations.
+/// Differences that touch a row of NaN are left out.
 #[must_use]
 pub fn vectors_noise_level<T: Real>(path: &[T]) -> f64 {
     let (path, _) = path.as_chunks::<3>();
