@@ -51,7 +51,6 @@ __all__ = [
     "smooth_body",
     "to_euler",
     "trusted",
-    "vectors_noise_level",
     "undevelop",
     "weighted_moving_mean",
     "write_bvh",
@@ -196,6 +195,17 @@ def savgol_derivative(
     /,
 ) -> Array: ...
 
+# filters/smooth
+def smooth(
+    q: Array,
+    translation: Array | None,
+    confidence: Array | None,
+    noise: NDArray[np.float64],
+    translation_noise: float,
+    /,
+) -> tuple[Array, Array | None]: ...
+def smooth_body(q: Array, pilot: Array, confidence: Array | None, noise: NDArray[np.float64], /) -> Array: ...
+
 # filters/stream
 @final
 class PoseStream:
@@ -232,39 +242,6 @@ def nonlocal_pose_means_stream(
     /,
 ) -> PoseStream: ...
 
-# filters/savgol
-def savgol(
-    q: Array,
-    translation: Array | None,
-    confidence: Array | None,
-    reference_sigma: NDArray[np.float64],
-    fit: NDArray[np.float64],
-    values: NDArray[np.float64],
-    /,
-) -> tuple[Array, Array | None]: ...
-def savgol_derivative(
-    q: Array,
-    confidence: Array | None,
-    reference_sigma: NDArray[np.float64],
-    fit: NDArray[np.float64],
-    values: NDArray[np.float64],
-    derivatives: NDArray[np.float64],
-    /,
-) -> Array: ...
-
-# filters/smooth
-def smooth(
-    q: Array,
-    translation: Array | None,
-    confidence: Array | None,
-    noise: NDArray[np.float64],
-    translation_noise: float,
-    /,
-) -> tuple[Array, Array | None]: ...
-def smooth_body(
-    q: Array, pilot: Array, confidence: Array | None, noise: NDArray[np.float64], /
-) -> Array: ...
-
 # filters/weighted_moving_mean
 def weighted_moving_mean(
     q: Array,
@@ -298,7 +275,6 @@ def forward_kinematics_moving(
 
 # noise/noise
 def noise_level(q: Array, /) -> Array: ...
-def vectors_noise_level(x: Array, /) -> float: ...
 
 # rotations/continuity
 def continuous(q: Array, /) -> Array: ...

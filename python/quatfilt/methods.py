@@ -66,9 +66,7 @@ FILTERS: Final[dict[str, Method]] = {
     "butterworth": Method(butterworth.butterworth, butterworth.with_translation),
     "despike": Method(despike.despike, despike.with_translation, angles=("smallest",)),
     "gaussian": Method(gaussian.gaussian, gaussian.with_translation),
-    "kalman": Method(
-        kalman.kalman, kalman.with_translation, angles=("process_noise", "measurement_noise")
-    ),
+    "kalman": Method(kalman.kalman, kalman.with_translation, angles=("process_noise", "measurement_noise")),
     "nonlocal_pose_means": Method(
         nonlocal_pose_means.nonlocal_pose_means, nonlocal_pose_means.with_translation, angles=("bandwidth",)
     ),

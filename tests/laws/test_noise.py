@@ -1,6 +1,7 @@
 """What must hold for estimated noise levels."""
 
 import clips
+import noise
 import numpy as np
 import tolerances
 from hypothesis import given
@@ -68,22 +69,21 @@ def test_float32(backend):
 def test_of_a_path_it_does_not_depend_on_its_place_nor_on_the_order_of_coordinates(backend, seed):
     rng = np.random.default_rng(seed)
     path = clips.path(rng, 80)
-    level = backend.vectors_noise_level(path)
-    assert type(level) is float
+    level = noise.of_path(backend, path)
     assert level > 0
     for other in (path + np.array([1e3, -20, 7]), path[:, [2, 0, 1]], -path, path[::-1]):
-        np.testing.assert_allclose(backend.vectors_noise_level(np.ascontiguousarray(other)), level, rtol=1e-9)
-    np.testing.assert_allclose(backend.vectors_noise_level(100 * path), 100 * level, rtol=tolerances.FLOAT64)
+        np.testing.assert_allclose(noise.of_path(backend, other), level, rtol=1e-9)
+    np.testing.assert_allclose(noise.of_path(backend, 100 * path), 100 * level, rtol=tolerances.FLOAT64)
 
 
 def test_smooth_and_short_paths_have_no_noise(backend):
     time = np.linspace(0, 1, 60)[:, None]
-    assert backend.vectors_noise_level(3 + time * np.array([5.0, 0, -2])) < tolerances.ALGEBRA
-    assert backend.vectors_noise_level(np.sin(3 * time + np.array([0.0, 1, 2]))) < 1e-9
+    assert noise.of_path(backend, 3 + time * np.array([5.0, 0, -2])) < tolerances.ALGEBRA
+    assert noise.of_path(backend, np.sin(3 * time + np.array([0.0, 1, 2]))) < 1e-9
     for frames in range(6):
-        assert backend.vectors_noise_level(clips.path(np.random.default_rng(0), frames)) == 0
-    assert backend.vectors_noise_level(clips.path(np.random.default_rng(0), 6)) > 0
-    assert backend.vectors_noise_level(np.full((60, 3), np.nan)) == 0
+        assert noise.of_path(backend, clips.path(np.random.default_rng(0), frames)) == 0
+    assert noise.of_path(backend, clips.path(np.random.default_rng(0), 6)) > 0
+    assert noise.of_path(backend, np.full((60, 3), np.nan)) == 0
 
 
 @given(seed=seeds)
@@ -92,10 +92,10 @@ def test_missing_places_do_not_spread(backend, seed):
     path = rng.standard_normal((200, 3))
     gaps = path.copy()
     gaps[rng.random(200) < 0.05] = np.nan
-    assert 0.6 < backend.vectors_noise_level(gaps) / backend.vectors_noise_level(path) < 1.6
+    assert 0.6 < noise.of_path(backend, gaps) / noise.of_path(backend, path) < 1.6
 
 
 def test_a_path_in_float32(backend):
     path = clips.path(np.random.default_rng(1), 500)
-    level = backend.vectors_noise_level(path)
-    np.testing.assert_allclose(backend.vectors_noise_level(path.astype(np.float32)), level, rtol=1e-4)
+    level = noise.of_path(backend, path)
+    np.testing.assert_allclose(noise.of_path(backend, path.astype(np.float32)), level, rtol=1e-4)

@@ -27,7 +27,7 @@ from quatfilt._reference.filters.weighted_moving_mean import weighted_moving_mea
 from quatfilt._reference.filters.smooth.body import smooth_body
 from quatfilt._reference.filters.smooth.smooth import smooth
 from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
-from quatfilt._reference.noise.noise import noise_level, vectors_noise_level
+from quatfilt._reference.noise.noise import noise_level
 from quatfilt._reference.rotations.euler import continuous_euler, from_euler, to_euler
 from quatfilt._reference.rotations.mean import mean
 from quatfilt._reference.rotations.quaternion import (
@@ -77,7 +77,6 @@ __all__ = [
     "smooth_body",
     "to_euler",
     "trusted",
-    "vectors_noise_level",
     "undevelop",
     "weighted_moving_mean",
 ]

@@ -55,7 +55,7 @@ class Clip:
         return len(self.rotations) < 2 or self.rotations.size == 0
 
     @property
-    def trusted(self) -> Array:
+    def observed(self) -> Array:
         """The rotations without those that have no confidence, filled ones among them: what noise is measured on."""
         if self.confidence is None:
             return self.rotations

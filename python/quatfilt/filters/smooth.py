@@ -107,13 +107,16 @@ def with_translation(
 ) -> tuple[Array, Array | None]:
     """Smooth as `smooth` does, and a translation ``(frames, 3)`` by its own noise and with the strength of joint 0."""
     clip = _spans.prepare(q, **missing)
-    scale = _validation.per_joint(strength, "strength", clip.rotations.shape[1], at_least=0, at_most=_STRONGEST)
+    scale = _validation.per_joint(
+        strength, "strength", clip.rotations.shape[1], at_least=0, at_most=_STRONGEST
+    )
     noise = np.zeros_like(scale)
     position_noise = 0.0
     if not clip.unchanged:
-        noise = scale * ops().noise_level(clip.trusted).astype(np.float64)
+        noise = scale * ops().noise_level(clip.observed).astype(np.float64)
         if translation is not None:
-            position_noise = float(scale[0]) * ops().vectors_noise_level(_trusted_part(translation, clip))
+            path = _trusted_part(translation, clip)
+            position_noise = float(scale[0] * ops().noise_level(path[:, None])[0])
 
     def run(
         rotations: Array, along: Array | None, trust: Array | None, there: NDArray[np.intp]
@@ -150,7 +153,7 @@ def _without_untrusted(rotations: Array, trust: Array) -> Array:
         return rotations
     gone = rotations.copy()
     gone[untrusted] = np.nan
-    return cast("Array", ops().fill_gaps(gone, -1)[0])
+    return cast("Array", ops().fill_gaps(gone, -1, "slerp")[0])
 
 
 __all__ = ["smooth", "with_translation"]

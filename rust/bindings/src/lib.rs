@@ -56,7 +56,7 @@ mod _core {
     #[pymodule_export]
     use super::motion::skeleton::{forward_kinematics, forward_kinematics_moving};
     #[pymodule_export]
-    use super::noise::noise::{noise_level, vectors_noise_level};
+    use super::noise::noise::noise_level;
     #[pymodule_export]
     use super::rotations::continuity::continuous;
     #[pymodule_export]

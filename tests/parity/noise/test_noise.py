@@ -1,6 +1,7 @@
 """The noise level: the core against the reference."""
 
 import clips
+import noise
 import numpy as np
 import pytest
 import tolerances
@@ -49,14 +50,13 @@ def test_periodic_clips(period):
     missing=st.sampled_from([0.0, 0.05, 0.5, 1.0]),
     size=st.sampled_from([1e-3, 1.0, 300.0]),
 )
-def test_vectors_noise_level(seed, frames, dtype, missing, size):
+def test_noise_level_of_paths(seed, frames, dtype, missing, size):
     rng = np.random.default_rng(seed)
     path = size * (5 + clips.path(rng, frames) + rng.normal(0, 0.01, (frames, 3)))
     path[rng.random(frames) < missing] = np.nan
     path = path.astype(dtype)
     before = path.tobytes()
-    result, expected = (backend.vectors_noise_level(path) for backend in (_core, _reference))
+    result, expected = (noise.of_path(backend, path) for backend in (_core, _reference))
     assert path.tobytes() == before, "the input was written"
-    assert type(result) is type(expected) is float
     largest = np.nanmax(np.abs(path), initial=0) if missing < 1 else 0
     assert abs(result - expected) <= tolerances.filtered(dtype) * largest

@@ -48,19 +48,6 @@ def noise_level(q: Reals) -> Reals:
     return np.asarray(np.where(np.isfinite(level), level, 0), q.dtype)
 
 
-def vectors_noise_level(x: Reals) -> float:
-    """Estimate the deviation of white noise per coordinate of a path, as :func:`noise_level` does for rotations.
-
-    Parameters
-    ----------
-    x : array (frames, 3)
-        Positions; differences that touch a row of NaN are left out.
-    """
-    steps = np.diff(x.astype(np.float64), axis=0)[:, None]
-    level = float(np.min([level_of_order(steps, order) for order in ORDERS]))
-    return level if np.isfinite(level) else 0.0
-
-
 def increments(q: Reals) -> Reals:
     """Rotation vectors from each frame to the next, NaN beside missing samples; `(frames − 1, joints, 3)`.
 

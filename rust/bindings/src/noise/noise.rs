@@ -2,7 +2,6 @@
 
 use crate::array::{by_dtype, clip, elements, input, output, run};
 use numpy::{PyArrayMethods, PyUntypedArrayMethods};
-use numpy::PyArrayMethods;
 use pyo3::prelude::*;
 use quatfilt_core::noise::noise;
 
@@ -27,16 +26,5 @@ pub(crate) fn noise_level(py: Python<'_>, q: &Bound<'_, PyAny>) -> PyResult<Py<P
             }
         }
         Ok(out.into_any().unbind())
-    })
-}
-
-/// Deviation of the noise per coordinate of a path `(frames, 3)`.
-#[pyfunction]
-#[pyo3(signature = (x, /))]
-pub(crate) fn vectors_noise_level(py: Python<'_>, x: &Bound<'_, PyAny>) -> PyResult<f64> {
-    by_dtype!(x, T => {
-        let x = input::<T>("x", x)?;
-        let x = elements("x", &x)?;
-        run(py, || Ok(noise::vectors_noise_level(x)))
     })
 }

@@ -113,20 +113,6 @@ fn level<T: Real>(planes: [&mut [T]; 3], buffer: &mut Vec<T>) -> f64 {
     if least.is_finite() { least } else { 0.0 }
 }
 
-/// Estimates the deviation of white noise per coordinate of a path `(frames, 3)`, as [`noise_level`] does for rotations.
-/// Differences that touch a row of NaN are left out.
-#[must_use]
-pub fn vectors_noise_level<T: Real>(path: &[T]) -> f64 {
-    let (path, _) = path.as_chunks::<3>();
-    let mut planes = Planes::new(3, path.len().saturating_sub(1));
-    for (c, plane) in planes.rows_mut::<3>(0).into_iter().enumerate() {
-        for (step, pair) in plane.iter_mut().zip(path.windows(2)) {
-            *step = (pair[1][c] - pair[0][c]) * T::HALF;
-        }
-    }
-    level(planes.rows_mut::<3>(0), &mut Vec::new())
-}
-
 /// Estimates the deviation of white noise per component of the rotation vector, in radians: `(joints)`.
 ///
 /// The increments in the frame of the body, `ω_t = 2 log(q_t⁻¹ q_{t+1})`, are first differences of the motion. Of the

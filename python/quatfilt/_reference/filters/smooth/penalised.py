@@ -89,8 +89,7 @@ def solve(bands: Reals, right: Reals) -> Reals:
         for k in range(1, min(order, n - 1 - t) + 1):
             # What rows t and t + k have in common before column t.
             shared = sum(
-                lower[j, t - j] * lower[j + k, t - j] * pivots[t - j]
-                for j in range(1, min(order - k, t) + 1)
+                lower[j, t - j] * lower[j + k, t - j] * pivots[t - j] for j in range(1, min(order - k, t) + 1)
             )
             lower[k, t] = (bands[k, t] - shared) / pivots[t]
         u[t] -= sum(lower[k, t - k] * u[t - k] for k in range(1, reach + 1))

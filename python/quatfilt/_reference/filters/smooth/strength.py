@@ -74,7 +74,9 @@ def candidates(block: int) -> Candidates:
     mu = 2 - 2 * np.cos(np.pi * np.arange(block) / block)
     # The mean of a block moves too: it counts as a quarter of the lowest frequency.
     mu[0] = mu[1] / 4
-    cutoffs = np.stack([np.geomspace(max(mu[0], STIFFEST ** (1 / order)), SOFTEST, CUTOFFS) for order in ORDERS])
+    cutoffs = np.stack(
+        [np.geomspace(max(mu[0], STIFFEST ** (1 / order)), SOFTEST, CUTOFFS) for order in ORDERS]
+    )
     ratio = mu / cutoffs[..., None]
     removed = np.stack([one**order / (1 + one**order) for one, order in zip(ratio, ORDERS, strict=True)])
     edges = list(range(min(FINE_BINS, block) + 1))
