@@ -90,4 +90,21 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn of_motion_along_one_direction_it_is_one_of_the_axes() {
+        let path = [2.0, -1.0, 2.0].map(|x| (0..30).map(|t| x * f64::from(t * t % 11)).collect::<Vec<f64>>());
+        let axes =
+            of_steps(path.each_ref().map(|plane| &plane[..]), &Interrupt::new()).expect("nobody interrupts");
+        let along = axes.map(|axis| (axis[0] * 2.0 - axis[1] + axis[2] * 2.0) / 3.0);
+        assert_eq!(along.iter().filter(|x| (x.abs() - 1.0).abs() < 1e-14).count(), 1);
+        assert_eq!(along.iter().filter(|x| x.abs() < 1e-14).count(), 2);
+    }
+
+    #[test]
+    fn who_is_asked_to_stop_stops() {
+        let interrupt = Interrupt::new();
+        interrupt.set();
+        assert!(matches!(eigenvectors(&mut [1.0, 0.5, 0.5, 2.0], 2, &interrupt), Err(Error::Interrupted)));
+    }
 }

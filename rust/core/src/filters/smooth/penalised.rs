@@ -137,15 +137,66 @@ fn solve<const O: usize>(
 mod tests {
     use super::*;
 
-    fn smoothed(order: usize, z: &[f64], softness: f64) -> Vec<f64> {
-        let n = z.len();
-        let mut planes = vec![vec![0.0; n]; 5];
-        let [solution, pivots, a, b, c] = &mut planes[..] else { return vec![] };
+    fn smoothed_with(
+        order: usize,
+        z: &[f64],
+        (variances, softness): (&[f64], &[f64]),
+        interrupt: &Interrupt,
+    ) -> Result<Vec<f64>, Error> {
+        let mut planes = vec![vec![0.0; z.len()]; 5];
+        let [solution, pivots, a, b, c] = &mut planes[..] else { return Ok(vec![]) };
         let mut memory = Memory { solution, pivots, lower: [a, b, c] };
         let mut x = z.to_vec();
-        penalised(order, &mut x, &vec![1.0; n], &vec![softness; n - order], &mut memory, &Interrupt::new())
-            .expect("nobody interrupts");
-        x
+        penalised(order, &mut x, variances, softness, &mut memory, interrupt)?;
+        Ok(x)
+    }
+
+    fn smoothed(order: usize, z: &[f64], softness: f64) -> Vec<f64> {
+        let (variances, softness) = (vec![1.0; z.len()], vec![softness; z.len() - order]);
+        smoothed_with(order, z, (&variances, &softness), &Interrupt::new()).expect("nobody interrupts")
+    }
+
+    #[test]
+    fn nothing_can_be_gained_on_the_minimum() {
+        let n = 40;
+        let z: Vec<f64> = (0..n).map(|t| f64::from(t * t * 7 % 23)).collect();
+        let variances: Vec<f64> = (0..n).map(|t| 1.0 + f64::from(t % 5)).collect();
+        for order in [1, 2, 3] {
+            let softness: Vec<f64> = (0..n - 3).map(|t| 0.1 + f64::from(t % 7)).collect();
+            let softness = [&softness[..], &[0.3, 2.0, 5.0][..3 - order]].concat();
+            let cost = |x: &[f64]| {
+                let data: f64 =
+                    x.iter().zip(&z).zip(&variances).map(|((x, z), v)| (x - z) * (x - z) / v).sum();
+                let mut differences = x.to_vec();
+                for _ in 0..order {
+                    differences = differences.windows(2).map(|pair| pair[1] - pair[0]).collect();
+                }
+                data + differences.iter().zip(&softness).map(|(d, s)| d * d / s).sum::<f64>()
+            };
+            let x = smoothed_with(order, &z, (&variances, &softness), &Interrupt::new())
+                .expect("nobody interrupts");
+            let least = cost(&x);
+            assert!(least < 0.9 * cost(&z));
+            // A parabola through three costs has its vertex where the solution is.
+            for t in 0..x.len() {
+                let [below, above] = [-1e-3, 1e-3].map(|step| {
+                    let mut other = x.clone();
+                    other[t] += step;
+                    cost(&other)
+                });
+                assert!(below > least && above > least);
+                assert!((above - below).abs() < 1e-6 * (above + below - 2.0 * least) + 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn who_is_asked_to_stop_stops() {
+        let interrupt = Interrupt::new();
+        interrupt.set();
+        let z = [1.0, 2.0, 0.0, 4.0, 1.0];
+        let result = smoothed_with(2, &z, (&[1.0; 5], &[1.0; 3]), &interrupt);
+        assert!(matches!(result, Err(Error::Interrupted)));
     }
 
     #[test]

@@ -263,3 +263,47 @@ multiversion! {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chosen(z: &[f64]) -> (usize, Vec<f64>) {
+        let candidates = Candidates::new(z.len());
+        let mut softness = vec![f64::NAN; z.len()];
+        let order = candidates.choose(z, &mut softness, &mut candidates.memory());
+        softness.truncate(z.len().saturating_sub(order));
+        (order, softness)
+    }
+
+    #[test]
+    fn the_shortest_columns_have_a_strength_too() {
+        for frames in 2..20 {
+            for size in [0.0, 1e-3, 1.0, 1e6] {
+                let z: Vec<f64> = (0..frames).map(|t| size * f64::from(t * 5 % 7)).collect();
+                let (order, softness) = chosen(&z);
+                assert!((1..=ORDERS).contains(&order));
+                assert!(softness.iter().all(|&s| s >= 0.99 * STIFFEST && s.is_finite()), "{frames} {size}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_stands_far_out_of_the_noise_is_hardly_smoothed_and_nothing_at_all_is_smoothed_most() {
+        let wave: Vec<f64> = (0..700).map(|t| 1e4 * f64::from(t * 211 % 97)).collect();
+        let (order, softness) = chosen(&wave);
+        let softest = SOFTEST.powi(i32::try_from(order).unwrap_or(0));
+        assert!(softness.iter().all(|&s| s > 0.9 * softest));
+        let (_, softness) = chosen(&vec![0.0; 700]);
+        assert!(softness.iter().all(|&s| s < 1e-3));
+    }
+
+    #[test]
+    fn where_a_clip_grows_lively_it_is_smoothed_less() {
+        let noise = |t: i32| f64::from(t * 7919 % 201) / 60.0 - 5.0 / 3.0;
+        let wave = |t: i32| if t < 2048 { 0.0 } else { 2.0 * Real::sin_cos(f64::from(t) / 5.0).0 };
+        let z: Vec<f64> = (0..4096).map(|t| noise(t) + wave(t)).collect();
+        let (_, softness) = chosen(&z);
+        assert!(softness[100] < 0.5 * softness[4000], "{} {}", softness[100], softness[4000]);
+    }
+}
