@@ -24,6 +24,7 @@ from quatfilt.filters.stream.bilateral import BilateralStream
 from quatfilt.filters.stream.nonlocal_pose_means import NonlocalPoseMeansStream
 from quatfilt.filters.wavelet import wavelet
 from quatfilt.filters.weighted_moving_mean import weighted_moving_mean
+from quatfilt.filters.smooth import smooth
 from quatfilt.formats.files import read_motion, write_motion
 from quatfilt.motion import metrics
 from quatfilt.motion.motion import Motion
@@ -83,6 +84,7 @@ __all__ = [
     "set_num_threads",
     "simd_level",
     "slerp",
+    "smooth",
     "use_backend",
     "wavelet",
     "weighted_moving_mean",

@@ -47,6 +47,8 @@ __all__ = [
     "set_num_threads",
     "simd_level",
     "slerp",
+    "smooth",
+    "smooth_body",
     "to_euler",
     "trusted",
     "undevelop",
@@ -192,6 +194,17 @@ def savgol_derivative(
     derivatives: NDArray[np.float64],
     /,
 ) -> Array: ...
+
+# filters/smooth
+def smooth(
+    q: Array,
+    translation: Array | None,
+    confidence: Array | None,
+    noise: NDArray[np.float64],
+    translation_noise: float,
+    /,
+) -> tuple[Array, Array | None]: ...
+def smooth_body(q: Array, pilot: Array, confidence: Array | None, noise: NDArray[np.float64], /) -> Array: ...
 
 # filters/stream
 @final

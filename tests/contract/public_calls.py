@@ -96,6 +96,7 @@ CALLS = {
     "resample": lambda a, _b, _v: qf.resample(a, fps=30, new_fps=31.7),
     "savgol": lambda a, _b, _v: qf.savgol(with_gaps(a), window_length=11),
     "slerp": lambda a, _b, _v: qf.slerp(a, np.arange(FRAMES), np.linspace(0, FRAMES - 1, 10_001)),
+    "smooth": lambda a, _b, _v: qf.smooth(with_gaps(a)),
     "wavelet": lambda a, _b, _v: qf.wavelet(with_gaps(a)),
     "weighted_moving_mean": lambda a, _b, _v: qf.weighted_moving_mean(with_gaps(a), iterations=3),
 }

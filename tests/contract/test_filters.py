@@ -25,6 +25,7 @@ FILTERS = {
     "savgol": lambda q, *more, window_length=7, **options: qf.savgol(
         q, *more, window_length=window_length, **options
     ),
+    "smooth": qf.smooth,
     "wavelet": qf.wavelet,
     "weighted_moving_mean": qf.weighted_moving_mean,
 }
@@ -41,6 +42,7 @@ OPTIONS = {
     "one_euro": qf.one_euro.__kwdefaults__,
     "orientation_filter": qf.orientation_filter.__kwdefaults__,
     "savgol": {"window_length": None, **qf.savgol.__kwdefaults__},
+    "smooth": qf.smooth.__kwdefaults__,
     "wavelet": qf.wavelet.__kwdefaults__,
     "weighted_moving_mean": qf.weighted_moving_mean.__kwdefaults__,
 }
@@ -431,6 +433,15 @@ WRONG_OPTIONS = [
     ("order", 0, ValueError, "expected an integer of at least 1 and at most 20, got 0"),
     ("order", 21, ValueError, "expected an integer of at least 1 and at most 20, got 21"),
     ("order", 4.0, TypeError, "expected an integer of at least 1 and at most 20, got float"),
+    ("strength", -0.1, ValueError, f"{NOT_NEGATIVE} and at most 1e+06, got -0.1"),
+    ("strength", 2e6, ValueError, f"{NOT_NEGATIVE} and at most 1e+06, got 2000000.0"),
+    ("strength", math.nan, ValueError, f"{NOT_NEGATIVE} and at most 1e+06, got nan"),
+    ("strength", math.inf, ValueError, f"{NOT_NEGATIVE} and at most 1e+06, got inf"),
+    ("strength", True, TypeError, f"{NOT_NEGATIVE} and at most 1e+06, got bool"),
+    ("strength", "auto", TypeError, f"{NOT_NEGATIVE} and at most 1e+06, got str"),
+    ("strength", None, TypeError, "expected real numbers, got dtype object"),
+    ("strength", [1.0, 1.0], ValueError, "expected a number or one per joint, shape (3,), got (2,)"),
+    ("strength", [1.0, -1.0, 1.0], ValueError, f"[1]{{}}{NOT_NEGATIVE} and at most 1e+06, got -1.0"),
     ("threshold", "soft", ValueError, "expected one of 'auto', 'bayes', 'universal', got 'soft'"),
     ("threshold", -0.1, ValueError, f"{NOT_NEGATIVE}, got -0.1"),
     ("threshold", math.inf, ValueError, f"{NOT_NEGATIVE}, got inf"),
@@ -599,6 +610,7 @@ def test_wrong_options(name, option, value, kind, message):
             ("min_cutoff", 0),
             ("iterations", 0),
             ("smallest", -1),
+            ("strength", -1),
             ("gaps", "drop"),
             ("fps", 0),
         ]

@@ -9,12 +9,23 @@ import pytest
 
 LONG_CALL = """
 import numpy as np, quatfilt as qf
-q = qf.add_gaussian_noise(np.tile([1.0, 0, 0, 0], (200_000, 20, 1)), sigma=0.05, rng=0)
+from quatfilt import _core
+q = qf.add_gaussian_noise(np.tile([1.0, 0, 0, 0], ({frames}, {joints}, 1)), sigma=0.05, rng=0)
 print("ready", flush=True)
-qf.nonlocal_pose_means(q, search_radius=None, bandwidth=0.05, chart={chart!r}, neighbors={neighbors})
+{call}
 print("ended", flush=True)
 """
-"""Minutes of work."""
+
+CALLS = {
+    "pose means": (200_000, 20, "qf.nonlocal_pose_means(q, search_radius=None, bandwidth=0.05)"),
+    "pose means, local chart": (
+        200_000,
+        20,
+        'qf.nonlocal_pose_means(q, search_radius=None, bandwidth=0.05, chart="local", neighbors=8)',
+    ),
+    "axes of a wide body": (4_000, 400, "_core.smooth_body(q, q, None, np.full(400, 0.05))"),
+}
+"""Frames, joints, and minutes of work."""
 
 HANGING = 30
 """Seconds after which a process counts as one that does not listen; it ends within a fraction of one."""
@@ -23,9 +34,10 @@ HANGING = 30
 @pytest.mark.skipif(
     sys.platform == "win32", reason="not on this platform: there is no SIGINT for one process"
 )
-@pytest.mark.parametrize(("chart", "neighbors"), [("mean", None), ("local", 8)])
-def test_a_long_call_ends_at_ctrl_c(chart, neighbors):
-    program = LONG_CALL.format(chart=chart, neighbors=neighbors)
+@pytest.mark.parametrize("name", CALLS)
+def test_a_long_call_ends_at_ctrl_c(name):
+    frames, joints, call = CALLS[name]
+    program = LONG_CALL.format(frames=frames, joints=joints, call=call)
     with subprocess.Popen(
         [sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     ) as child:

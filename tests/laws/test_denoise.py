@@ -88,7 +88,7 @@ def test_confidence_reaches_the_steps_that_know_it():
     trust = clips.confidences(np.random.default_rng(1), 60, 3)
     chain = ["bilateral", "nonlocal_pose_means"]
     result = qf.denoise(noisy.rotations, method=chain, confidence=trust)
-    expected = qf.nonlocal_pose_means(qf.bilateral(noisy.rotations), confidence=trust)
+    expected = qf.nonlocal_pose_means(qf.bilateral(noisy.rotations, confidence=trust), confidence=trust)
     np.testing.assert_array_equal(result, expected)
 
 

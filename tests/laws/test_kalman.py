@@ -128,7 +128,9 @@ def motion(rate):
     frequency = rng.uniform(0.2, 2, (3, 3, 4))
     phase = rng.uniform(0, 2 * np.pi, frequency.shape)
     t = np.arange(4 * rate + 1)[:, None, None, None] / rate
-    return clips.from_vectors(np.sum(0.3 * np.sin(2 * np.pi * frequency * t + phase) / (1 + frequency), axis=-1))
+    return clips.from_vectors(
+        np.sum(0.3 * np.sin(2 * np.pi * frequency * t + phase) / (1 + frequency), axis=-1)
+    )
 
 
 @pytest.mark.parametrize("noise", [1.0, 5.0])
@@ -311,7 +313,9 @@ def test_lines_stay(backend):
 def test_numbers_know_no_scale_and_no_origin(backend):
     x = clips.path(np.random.default_rng(14), 60)
     ratio = backend.kalman_vectors_ratio(x, 60, WHOLE)
-    np.testing.assert_allclose(backend.kalman_vectors_ratio(1e6 * x + 1e3, 60, WHOLE), ratio, rtol=tolerances.RATIO)
+    np.testing.assert_allclose(
+        backend.kalman_vectors_ratio(1e6 * x + 1e3, 60, WHOLE), ratio, rtol=tolerances.RATIO
+    )
     result = backend.kalman_vectors(x, ratio, WHOLE)
     moved = backend.kalman_vectors(1e6 * x + 1e3, ratio, WHOLE)
     np.testing.assert_allclose((moved - 1e3) / 1e6, result, rtol=0, atol=tolerances.FLOAT64)

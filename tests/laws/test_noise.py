@@ -1,6 +1,7 @@
 """What must hold for estimated noise levels."""
 
 import clips
+import noise
 import numpy as np
 import tolerances
 from hypothesis import given
@@ -59,3 +60,42 @@ def test_float32(backend):
     level = backend.noise_level(q.astype(np.float32))
     assert level.dtype == np.float32
     np.testing.assert_allclose(level, backend.noise_level(q), rtol=0, atol=tolerances.FLOAT32)
+
+
+# ---- paths
+
+
+@given(seed=seeds)
+def test_of_a_path_it_does_not_depend_on_its_place_nor_on_the_order_of_coordinates(backend, seed):
+    rng = np.random.default_rng(seed)
+    path = clips.path(rng, 80)
+    level = noise.of_path(backend, path)
+    assert level > 0
+    for other in (path + np.array([1e3, -20, 7]), path[:, [2, 0, 1]], -path, path[::-1]):
+        np.testing.assert_allclose(noise.of_path(backend, other), level, rtol=1e-9)
+    np.testing.assert_allclose(noise.of_path(backend, 100 * path), 100 * level, rtol=tolerances.FLOAT64)
+
+
+def test_smooth_and_short_paths_have_no_noise(backend):
+    time = np.linspace(0, 1, 60)[:, None]
+    assert noise.of_path(backend, 3 + time * np.array([5.0, 0, -2])) < tolerances.ALGEBRA
+    assert noise.of_path(backend, np.sin(3 * time + np.array([0.0, 1, 2]))) < 1e-9
+    for frames in range(6):
+        assert noise.of_path(backend, clips.path(np.random.default_rng(0), frames)) == 0
+    assert noise.of_path(backend, clips.path(np.random.default_rng(0), 6)) > 0
+    assert noise.of_path(backend, np.full((60, 3), np.nan)) == 0
+
+
+@given(seed=seeds)
+def test_missing_places_do_not_spread(backend, seed):
+    rng = np.random.default_rng(seed)
+    path = rng.standard_normal((200, 3))
+    gaps = path.copy()
+    gaps[rng.random(200) < 0.05] = np.nan
+    assert 0.6 < noise.of_path(backend, gaps) / noise.of_path(backend, path) < 1.6
+
+
+def test_a_path_in_float32(backend):
+    path = clips.path(np.random.default_rng(1), 500)
+    level = noise.of_path(backend, path)
+    np.testing.assert_allclose(noise.of_path(backend, path.astype(np.float32)), level, rtol=1e-4)

@@ -62,7 +62,8 @@ def about_axis(angle):
 
 @pytest.mark.parametrize("lookahead", [0, 1, 10, FRAMES])
 @pytest.mark.parametrize(
-    ("noise", "trusted"), [(0.0, False), (1e-4, False), (0.01, False), (1.0, False), (0.0, True), (0.01, True)]
+    ("noise", "trusted"),
+    [(0.0, False), (1e-4, False), (0.01, False), (1.0, False), (0.0, True), (0.01, True)],
 )
 def test_angles_about_one_axis(backend, noise, trusted, lookahead):
     """However far they turn, as long as no forecast is left."""
@@ -73,7 +74,11 @@ def test_angles_about_one_axis(backend, noise, trusted, lookahead):
         variance = 0.1**2 / confidence[:, 0]
     expected = linear(angle, variance, noise, np.pi**2, lookahead)
     result = backend.kalman(
-        about_axis(angle), confidence, np.array([noise]), np.array([0.1]), lookahead if lookahead < FRAMES else -1
+        about_axis(angle),
+        confidence,
+        np.array([noise]),
+        np.array([0.1]),
+        lookahead if lookahead < FRAMES else -1,
     )
     assert clips.angles(result, about_axis(expected)).max() < tolerances.FLOAT64
 
@@ -157,7 +162,9 @@ def test_the_automatic_noise_of_the_forward_filter_makes_the_best_forecasts(back
 def test_numbers(backend, ratio, lookahead):
     angle, _ = turning()
     expected = linear(angle, np.ones(FRAMES), np.sqrt(ratio), 1e10, lookahead)
-    result = backend.kalman_vectors(angle[:, None], np.array([ratio]), lookahead if lookahead < FRAMES else -1)
+    result = backend.kalman_vectors(
+        angle[:, None], np.array([ratio]), lookahead if lookahead < FRAMES else -1
+    )
     # Plain matrices lose digits while nothing is known of the velocity.
     np.testing.assert_allclose(result[:, 0], expected, rtol=0, atol=1e-5)
     np.testing.assert_allclose(result[5:, 0], expected[5:], rtol=0, atol=1e-6)

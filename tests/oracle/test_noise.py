@@ -1,6 +1,7 @@
 """The noise level against the noise that was added."""
 
 import clips
+import noise
 import numpy as np
 import pytest
 import tolerances
@@ -34,3 +35,20 @@ def test_of_one_coordinate_alone(backend):
         abs(backend.noise_level(clips.from_vectors(vectors)).mean() / expected - 1)
         < tolerances.WHITE_NOISE_LEVEL
     )
+
+
+@pytest.mark.parametrize("scale", [1e-3, 40.0])
+def test_of_a_path_that_wanders(backend, scale):
+    rng = np.random.default_rng(3)
+    time = np.arange(20_000)[:, None] / 120
+    path = scale * np.sin(time * np.array([1.0, 2, 3])) + scale * rng.normal(0, SIGMA, (20_000, 3))
+    assert abs(noise.of_path(backend, path) / (scale * SIGMA) - 1) < tolerances.WHITE_NOISE_LEVEL
+
+
+def test_of_a_path_it_is_what_the_level_of_small_rotations_is(backend):
+    rng = np.random.default_rng(4)
+    vectors = 1e-5 * (
+        np.sin(np.arange(300)[:, None] / np.array([9.0, 13, 17])) + rng.normal(0, 0.1, (300, 3))
+    )
+    level = backend.noise_level(clips.from_vectors(vectors[:, None]))[0]
+    assert abs(noise.of_path(backend, vectors) / level - 1) < 1e-4

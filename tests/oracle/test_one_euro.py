@@ -46,7 +46,8 @@ class OneEuro:
 
 @pytest.mark.parametrize("gaps", [False, True])
 @pytest.mark.parametrize(
-    ("min_cutoff", "beta", "derivative_cutoff"), [(1.0, 0.0, 1.0), (1.0, 0.007, 1.0), (0.5, 1.0, 2.0), (4.0, 0.3, 0.1)]
+    ("min_cutoff", "beta", "derivative_cutoff"),
+    [(1.0, 0.0, 1.0), (1.0, 0.007, 1.0), (0.5, 1.0, 2.0), (4.0, 0.3, 0.1)],
 )
 def test_angles_about_one_axis(backend, min_cutoff, beta, derivative_cutoff, gaps):
     """However far they turn, as long as the result lags by less than half a turn."""

@@ -24,6 +24,8 @@ from quatfilt._reference.filters.one_euro import one_euro
 from quatfilt._reference.filters.orientation_filter import orientation_filter
 from quatfilt._reference.filters.savgol import savgol, savgol_derivative
 from quatfilt._reference.filters.weighted_moving_mean import weighted_moving_mean
+from quatfilt._reference.filters.smooth.body import smooth_body
+from quatfilt._reference.filters.smooth.smooth import smooth
 from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
 from quatfilt._reference.noise.noise import noise_level
 from quatfilt._reference.rotations.euler import continuous_euler, from_euler, to_euler
@@ -71,6 +73,8 @@ __all__ = [
     "savgol_derivative",
     "scan",
     "slerp",
+    "smooth",
+    "smooth_body",
     "to_euler",
     "trusted",
     "undevelop",

@@ -54,6 +54,13 @@ class Clip:
         """Whether the clip is too short to be filtered."""
         return len(self.rotations) < 2 or self.rotations.size == 0
 
+    @property
+    def observed(self) -> Array:
+        """The rotations without those that have no confidence, filled ones among them: what noise is measured on."""
+        if self.confidence is None:
+            return self.rotations
+        return np.where(self.confidence[..., None] > 0, self.rotations, np.nan).astype(self.rotations.dtype)
+
     def finish(self, rotations: Array) -> Array:
         """Return a result in the shape and order of the input, with gaps kept if that was asked for."""
         if self.gaps == "keep" and not self.unchanged:

@@ -2,7 +2,9 @@
 //!
 //! One test only: the level belongs to the process, and tests of one file run at the same time.
 
+use quatfilt_core::filters::development::Input;
 use quatfilt_core::filters::nonlocal_pose_means::{Chart, Distance, NonlocalPoseMeans, Weights};
+use quatfilt_core::filters::smooth::{Noisy, REFERENCE_SIGMA, Smoother, smooth_body};
 use quatfilt_core::parallel::Interrupt;
 use quatfilt_core::rotations::{mean, quaternion};
 use quatfilt_core::simd::Level;
@@ -79,7 +81,25 @@ fn filters<T: Real>() -> Result<Vec<(&'static str, Vec<T>)>, Error> {
             results.push((name, out));
         }
     }
+    results.extend(smoothers(view)?);
     Ok(results)
+}
+
+/// Automatic smoothing of each joint, and of all together.
+fn smoothers<T: Real>(clip: ClipView<'_, T>) -> Result<[(&'static str, Vec<T>); 2], Error> {
+    let (frames, joints) = (clip.frames(), clip.joints());
+    let interrupt = Interrupt::new();
+    let noise = vec![0.05; joints];
+    let mut pilot = vec![T::ZERO; clip.data().len()];
+    let input = Input { clip, confidence: None, reference_sigma: &vec![REFERENCE_SIGMA; joints] };
+    let smoother = Smoother::new(frames, noise.clone(), 0.0);
+    input.filter(&smoother, None, ClipMut::new(&mut pilot, frames, joints)?, &interrupt)?;
+    let mut body = pilot.clone();
+    let noisy =
+        Noisy { clip, pilot: ClipView::new(&pilot, frames, joints)?, confidence: None, noise: &noise };
+    smooth_body(&noisy, ClipMut::new(&mut body, frames, joints)?, &interrupt)?;
+    assert!(body != pilot);
+    Ok([("smooth", pilot), ("smooth_body", body)])
 }
 
 fn at_level<T: Real>(level: Level) -> Result<Vec<(&'static str, Vec<u64>)>, Error> {

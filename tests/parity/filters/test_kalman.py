@@ -119,13 +119,13 @@ def test_numbers(seed, frames, columns, dtype, ratio, lookahead):
     np.testing.assert_allclose(result, expected, rtol=0, atol=10 * tolerances.filtered(dtype))
 
 
-@given(seed=seeds, frames=st.integers(0, 60), block=st.sampled_from([10, 25, 100]), lookahead=st.integers(-1, 1))
+@given(
+    seed=seeds, frames=st.integers(0, 60), block=st.sampled_from([10, 25, 100]), lookahead=st.integers(-1, 1)
+)
 def test_the_ratio_of_numbers(seed, frames, block, lookahead):
     rng = np.random.default_rng(seed)
     x = np.sin(np.arange(frames)[:, None] / 9 + np.arange(3)) + 0.1 * rng.standard_normal((frames, 3))
-    result, expected = (
-        backend.kalman_vectors_ratio(x, block, lookahead) for backend in (_core, _reference)
-    )
+    result, expected = (backend.kalman_vectors_ratio(x, block, lookahead) for backend in (_core, _reference))
     np.testing.assert_allclose(result, expected, rtol=tolerances.RATIO)
 
 

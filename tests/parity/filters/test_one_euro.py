@@ -22,7 +22,8 @@ def noisy(rng, frames, joints, sigma=0.05):
 
 def agree(q, *, translation=None, confidence=None, min_cutoff=0.01, beta=0.1, derivative_cutoff=0.01):
     numbers = [
-        np.broadcast_to(x, q.shape[1]).astype(np.float64).copy() for x in (min_cutoff, beta, derivative_cutoff)
+        np.broadcast_to(x, q.shape[1]).astype(np.float64).copy()
+        for x in (min_cutoff, beta, derivative_cutoff)
     ]
     translation = None if translation is None else np.require(translation, q.dtype, "C")
     arguments = (q, translation, confidence, *numbers)

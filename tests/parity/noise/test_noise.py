@@ -1,6 +1,7 @@
 """The noise level: the core against the reference."""
 
 import clips
+import noise
 import numpy as np
 import pytest
 import tolerances
@@ -40,3 +41,22 @@ def test_periodic_clips(period):
     rng = np.random.default_rng(1)
     q = clips.noisy(rng, clips.random_rotations(rng, 1, 2).repeat(period, axis=0), 0.3)
     agree(np.tile(q, (20_000 // period, 1, 1)))
+
+
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    frames=st.one_of(st.integers(0, 20), st.sampled_from([100, 8_200, 20_001])),
+    dtype=st.sampled_from([np.float32, np.float64]),
+    missing=st.sampled_from([0.0, 0.05, 0.5, 1.0]),
+    size=st.sampled_from([1e-3, 1.0, 300.0]),
+)
+def test_noise_level_of_paths(seed, frames, dtype, missing, size):
+    rng = np.random.default_rng(seed)
+    path = size * (5 + clips.path(rng, frames) + rng.normal(0, 0.01, (frames, 3)))
+    path[rng.random(frames) < missing] = np.nan
+    path = path.astype(dtype)
+    before = path.tobytes()
+    result, expected = (noise.of_path(backend, path) for backend in (_core, _reference))
+    assert path.tobytes() == before, "the input was written"
+    largest = np.nanmax(np.abs(path), initial=0) if missing < 1 else 0
+    assert abs(result - expected) <= tolerances.filtered(dtype) * largest

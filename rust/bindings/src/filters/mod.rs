@@ -13,5 +13,6 @@ pub(crate) mod nonlocal_pose_means;
 pub(crate) mod one_euro;
 pub(crate) mod orientation_filter;
 pub(crate) mod savgol;
+pub(crate) mod smooth;
 pub(crate) mod stream;
 pub(crate) mod weighted_moving_mean;

@@ -16,5 +16,6 @@ pub mod one_euro;
 pub mod orientation_filter;
 mod samples;
 pub mod savgol;
+pub mod smooth;
 pub mod stream;
 pub mod weighted_moving_mean;

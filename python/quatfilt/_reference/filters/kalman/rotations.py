@@ -103,7 +103,10 @@ def forward(
     state = unknown(samples[0], np.ones_like(trust[0]), variance)
     begun = trust[0] > 0
     result = [
-        (either(begun, unknown(samples[0], np.where(begun, trust[0], 1), variance), state), 0 * state.velocity)
+        (
+            either(begun, unknown(samples[0], np.where(begun, trust[0], 1), variance), state),
+            0 * state.velocity,
+        )
     ]
     for sample, weight in zip(samples[1:], trust[1:], strict=True):
         after, innovation = step(result[-1][0], sample, weight, process_variance, variance)

@@ -47,6 +47,11 @@ pub trait Smooth: Sync {
         Ok(())
     }
 
+    /// How often the rotations are filtered, each time about the result of the time before.
+    fn rounds(&self) -> usize {
+        1
+    }
+
     /// Filters the vectors of a joint in place.
     ///
     /// # Errors
@@ -58,6 +63,19 @@ pub trait Smooth: Sync {
         spare: &mut Planes<f64>,
         interrupt: &Interrupt,
     ) -> Result<(), Error>;
+
+    /// Filters a translation in place; as the first joint, unless it has parameters of its own.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    fn smooth_translation(
+        &self,
+        columns: Columns<'_>,
+        spare: &mut Planes<f64>,
+        interrupt: &Interrupt,
+    ) -> Result<(), Error> {
+        self.smooth(0, columns, spare, interrupt)
+    }
 }
 
 /// What is filtered, and how its reference path is made.
@@ -156,8 +174,13 @@ impl<T: Real> Input<'_, T> {
         }
         let results =
             self.each_joint(4, filter.nanoseconds(), interrupt, |joint, mut path, spare, rows| {
-                filter.smooth(joint, path.columns(), spare, interrupt)?;
-                path.follow_vectors();
+                for round in 0..filter.rounds() {
+                    if round > 0 {
+                        path.roll_out();
+                    }
+                    filter.smooth(joint, path.columns(), spare, interrupt)?;
+                    path.follow_vectors();
+                }
                 store(&path, self.clip.at(0, joint), rows);
                 Ok(())
             })?;
@@ -177,11 +200,8 @@ impl<T: Real> Input<'_, T> {
         let mut planes = Planes::new(7, frames.next_multiple_of(BLOCK));
         let [x, y, z, trust, mean @ ..] = planes.rows_mut::<7>(0);
         let mut vectors = [x, y, z];
-        for (column, vector) in vectors.iter_mut().enumerate() {
-            for (value, from) in vector.iter_mut().zip(values[column..].iter().step_by(3)) {
-                *value = from.to_f64();
-            }
-        }
+        let mut mean = mean;
+        load_columns(values, &mut mean);
         let trust = self.confidence.map(|confidence| {
             for (value, from) in trust.iter_mut().zip(confidence.iter().step_by(self.clip.joints())) {
                 *value = from.to_f64();
@@ -189,24 +209,37 @@ impl<T: Real> Input<'_, T> {
             &*trust
         });
         let mask = Mask::gaussian(self.reference_sigma[0]);
-        let mut mean = mean;
-        for (mean, vector) in mean.iter_mut().zip(&vectors) {
-            mean.copy_from_slice(vector);
-        }
         mask.means(&mut mean, trust, (frames, Boundary::Mirror), &mut spare, interrupt)?;
-        let columns = Columns {
-            frames,
-            vectors: vectors.each_mut().map(|column| &mut **column),
-            mean: mean.each_ref().map(|column| &**column),
-            trust,
-        };
-        filter.smooth(0, columns, &mut spare, interrupt)?;
+        for round in 0..filter.rounds() {
+            if round > 0 {
+                for (mean, vector) in mean.iter_mut().zip(&vectors) {
+                    mean.copy_from_slice(vector);
+                }
+            }
+            load_columns(values, &mut vectors);
+            let columns = Columns {
+                frames,
+                vectors: vectors.each_mut().map(|column| &mut **column),
+                mean: mean.each_ref().map(|column| &**column),
+                trust,
+            };
+            filter.smooth_translation(columns, &mut spare, interrupt)?;
+        }
         for (column, vector) in vectors.iter().enumerate() {
             for (value, from) in out[column..].iter_mut().step_by(3).zip(vector.iter()) {
                 *value = T::from_f64(*from);
             }
         }
         Ok(())
+    }
+}
+
+/// Reads rows of three numbers into columns.
+fn load_columns<T: Real>(values: &[T], columns: &mut [&mut [f64]; 3]) {
+    for (column, numbers) in columns.iter_mut().enumerate() {
+        for (number, from) in numbers.iter_mut().zip(values[column..].iter().step_by(3)) {
+            *number = from.to_f64();
+        }
     }
 }
 

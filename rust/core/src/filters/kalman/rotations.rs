@@ -226,9 +226,7 @@ impl Later {
     pub(super) fn nothing(record: &Record) -> Self {
         Self {
             rotation: record.rotation,
-            way: std::array::from_fn(|c| {
-                std::array::from_fn(|i| record.velocity[c][i] * record.beyond[i])
-            }),
+            way: std::array::from_fn(|c| std::array::from_fn(|i| record.velocity[c][i] * record.beyond[i])),
             half: Record::STILL.rotation,
             velocity: record.velocity,
             heard: [false; LANES],

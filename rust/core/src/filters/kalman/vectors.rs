@@ -1,8 +1,8 @@
 //! The Kalman filter of constant velocity, and its smoother, on numbers.
 
 use super::covariance::Covariance;
-use crate::parallel::{self, Interrupt};
 use crate::error::check_length;
+use crate::parallel::{self, Interrupt};
 use crate::{Error, Real};
 
 /// Variance of the velocity before anything is known of it, in variances of a measurement.
@@ -17,11 +17,17 @@ pub(super) struct State {
 }
 
 /// Filters a column forward; `judge` is told the innovations in order.
-pub(super) fn forward(values: impl IntoIterator<Item = f64>, ratio: f64, mut judge: impl FnMut(f64)) -> Vec<State> {
+pub(super) fn forward(
+    values: impl IntoIterator<Item = f64>,
+    ratio: f64,
+    mut judge: impl FnMut(f64),
+) -> Vec<State> {
     let mut states: Vec<State> = Vec::new();
     for sample in values {
         let after = match states.last() {
-            None => State { value: sample, velocity: 0.0, covariance: Covariance::first(1.0, UNKNOWN_VELOCITY) },
+            None => {
+                State { value: sample, velocity: 0.0, covariance: Covariance::first(1.0, UNKNOWN_VELOCITY) }
+            }
             Some(before) => {
                 let covariance = before.covariance.predicted(ratio);
                 let innovation = sample - (before.value + before.velocity);
@@ -78,20 +84,21 @@ pub fn filter_vectors<T: Real>(
     }
     let reach = lookahead.unwrap_or(frames).min(frames - 1);
     let tasks: Vec<f64> = ratios.to_vec();
-    let filtered = parallel::map(tasks, values.len() * (30 + 10 * reach.min(frames - reach)), |column, ratio| {
-        let states = forward(values[column..].iter().step_by(columns).map(|x| x.to_f64()), ratio, |_| ());
-        let mut result = vec![0.0; frames];
-        for last in reach..frames - 1 {
-            interrupt.check()?;
-            backward(&states[last - reach..=last], ratio, |value| result[last - reach] = value);
-        }
-        let mut frame = frames;
-        backward(&states[frames - 1 - reach..], ratio, |value| {
-            frame -= 1;
-            result[frame] = value;
-        });
-        Ok(result)
-    })?;
+    let filtered =
+        parallel::map(tasks, values.len() * (30 + 10 * reach.min(frames - reach)), |column, ratio| {
+            let states = forward(values[column..].iter().step_by(columns).map(|x| x.to_f64()), ratio, |_| ());
+            let mut result = vec![0.0; frames];
+            for last in reach..frames - 1 {
+                interrupt.check()?;
+                backward(&states[last - reach..=last], ratio, |value| result[last - reach] = value);
+            }
+            let mut frame = frames;
+            backward(&states[frames - 1 - reach..], ratio, |value| {
+                frame -= 1;
+                result[frame] = value;
+            });
+            Ok(result)
+        })?;
     for (column, result) in filtered.iter().enumerate() {
         for (out, value) in out[column..].iter_mut().step_by(columns).zip(result) {
             *out = T::from_f64(*value);
