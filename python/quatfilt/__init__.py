@@ -20,11 +20,11 @@ from quatfilt.filters.nonlocal_pose_means import nonlocal_pose_means
 from quatfilt.filters.one_euro import one_euro
 from quatfilt.filters.orientation_filter import orientation_filter
 from quatfilt.filters.savgol import savgol
+from quatfilt.filters.smooth import smooth
 from quatfilt.filters.stream.bilateral import BilateralStream
 from quatfilt.filters.stream.nonlocal_pose_means import NonlocalPoseMeansStream
 from quatfilt.filters.wavelet import wavelet
 from quatfilt.filters.weighted_moving_mean import weighted_moving_mean
-from quatfilt.filters.smooth import smooth
 from quatfilt.formats.files import read_motion, write_motion
 from quatfilt.motion import metrics
 from quatfilt.motion.motion import Motion

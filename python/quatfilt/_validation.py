@@ -193,14 +193,6 @@ def choice(
     raise ValueError(f"{expected}: {reason}" if reason else expected)
 
 
-def odd(value: Any, name: str) -> int:
-    """Return `value` as an odd int of at least 1."""
-    result = integer(value, name, at_least=1)
-    if result % 2 == 0:
-        raise ValueError(f"{name}: expected an odd number, got {result}")
-    return result
-
-
 def known(value: Any, name: str, names: Collection[str], expected: str) -> str:
     """Return `value` if it is one of many names; `expected` says of which."""
     if isinstance(value, str) and value in names:

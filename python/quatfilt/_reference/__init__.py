@@ -23,9 +23,9 @@ from quatfilt._reference.filters.nonlocal_pose_means import nonlocal_pose_means
 from quatfilt._reference.filters.one_euro import one_euro
 from quatfilt._reference.filters.orientation_filter import orientation_filter
 from quatfilt._reference.filters.savgol import savgol, savgol_derivative
-from quatfilt._reference.filters.weighted_moving_mean import weighted_moving_mean
 from quatfilt._reference.filters.smooth.body import smooth_body
 from quatfilt._reference.filters.smooth.smooth import smooth
+from quatfilt._reference.filters.weighted_moving_mean import weighted_moving_mean
 from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
 from quatfilt._reference.noise.noise import noise_level
 from quatfilt._reference.rotations.euler import continuous_euler, from_euler, to_euler
