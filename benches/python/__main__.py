@@ -7,7 +7,7 @@ from pathlib import Path
 from conditions import conditions
 from report import Results, aims_table, show, write
 
-ROOMS = ("rotations", "filters", "noise", "formats")
+ROOMS = ("rotations", "filters", "classical", "noise", "formats")
 
 
 def main() -> None:

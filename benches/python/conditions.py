@@ -8,7 +8,7 @@ from pathlib import Path
 import quatfilt as qf
 from timing import all_threads
 
-_PACKAGES = ("quatfilt", "numpy", "scipy", "numba", "numpy-quaternion", "quaternionic", "pybvh")
+_PACKAGES = ("quatfilt", "numpy", "scipy", "numba", "numpy-quaternion", "quaternionic", "pybvh", "filterpy")
 
 
 def conditions(repetitions: int) -> dict[str, str]:

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quatfilt._reference._arrays import Reals
 
@@ -57,7 +58,7 @@ class Candidates:
 
     cutoffs: Reals
     """`(orders, CUTOFFS)`."""
-    edges: Reals
+    edges: NDArray[np.intp]
     """First frequency of each bin, and the number of all."""
     removed: Reals
     """Mean of `1 − h` over each bin, `(orders, CUTOFFS, bins)`."""
