@@ -226,6 +226,18 @@ def test_missing_samples_do_not_spread(backend, seed, dtype):
     np.testing.assert_array_equal(np.isnan(kept).any(axis=-1), (gaps == 0).all(-1) | np.isnan(gaps).any(-1))
 
 
+def test_sides_of_longer_gaps_have_the_noise_in_common_and_nothing_else(backend):
+    assert backend is not None
+    q, _ = sample(12, 120)
+    gap = q.copy()
+    gap[50:54] = np.nan
+    result = qf.smooth(gap, max_gap=3)
+    assert np.isnan(result[50:54]).all()
+    for side in (slice(0, 50), slice(54, None)):
+        alone = qf.smooth(q[side], strength=qf.noise_level(gap) / qf.noise_level(q[side]))
+        assert clips.angles(result[side], alone).max() < tolerances.PRINCIPAL_AXES
+
+
 @given(seed=seeds)
 def test_what_is_not_trusted_does_not_matter(backend, seed):
     """Whatever it is: neither its rotation nor its place, nor for the estimate of the noise."""
