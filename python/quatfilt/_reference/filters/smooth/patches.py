@@ -124,7 +124,8 @@ def groups(clean: Reals) -> list[list[int]]:
     """Return for each joint itself and the others that move most like it.
 
     With the steps `v` from frame to frame and `M_ij = Σ_t v_i v_jᵀ`, the similarity of two joints is
-    `‖M_ij‖ / √(‖M_ii‖ ‖M_jj‖)`, Frobenius norms: whatever frames of reference they turn in. Among equals the first joint is taken.
+    `‖M_ij‖ / √(‖M_ii‖ ‖M_jj‖)`, Frobenius norms: whatever frames of reference they turn in. Among equals the first joint is
+    taken.
     """
     steps = np.diff(clean, axis=0)
     joints = steps.shape[1]
@@ -170,8 +171,8 @@ def nearest(pilots: Reals, start: int) -> Reals:
 def wiener(alike: Reals, pilot: Reals, rest: Reals) -> Reals:
     """Estimate a clean patch, as its difference from the pilot's.
 
-    If patches are normal with the mean `μ` and the covariance `C`, and noise of variance 1 is added, the best estimate from a noisy
-    one, `y = p + x`, is
+    If patches are normal with the mean `μ` and the covariance `C`, and noise of variance 1 is added, the best estimate from a
+    noisy one, `y = p + x`, is
 
         `f = μ + C (C + I)⁻¹ (y − μ)`,    hence    `f − p = x − (C + I)⁻¹ (y − μ)`.
 

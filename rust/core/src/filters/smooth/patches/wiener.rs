@@ -125,8 +125,8 @@ multiversion! {
 }
 
 multiversion! {
-    /// Gaussian elimination of a symmetric positive matrix, from its upper triangle and with the right side in column `n`: what is
-    /// left is Cholesky's factor, its rows scaled by the pivots. The inverse pivots go to `inverses`.
+    /// Gaussian elimination of a symmetric positive matrix, from its upper triangle and with the right side in column `n`: what
+    /// is left is Cholesky's factor, its rows scaled by the pivots. The inverse pivots go to `inverses`.
     fn eliminate<T: Real>(matrix: &mut [T], width: usize, n: usize, inverses: &mut [T]) {
         for i in 0..n {
             let (above, row) = matrix.split_at_mut(i * width);
