@@ -1,9 +1,9 @@
-//! Automatic smoothing: each joint by itself, and all together.
+//! Automatic smoothing: each joint by itself, all together, and groups of similar patches.
 
 use quatfilt_benches::clips::{self, NOISE};
 use quatfilt_benches::timer::Timer;
 use quatfilt_core::filters::development::Input;
-use quatfilt_core::filters::smooth::{Noisy, REFERENCE_SIGMA, Smoother, smooth_body};
+use quatfilt_core::filters::smooth::{Noisy, REFERENCE_SIGMA, Smoother, smooth_body, smooth_patches};
 use quatfilt_core::parallel::Interrupt;
 use quatfilt_core::{ClipMut, ClipView, Error, Real};
 
@@ -33,5 +33,8 @@ fn smooth<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error>
     let mut out = vec![T::ZERO; q.len()];
     timer.threads::<T, _, _>("filters/smooth_body", size, || {
         smooth_body(&noisy, ClipMut::new(&mut out, frames, joints)?, &interrupt)
+    })?;
+    timer.threads::<T, _, _>("filters/smooth_patches", size, || {
+        smooth_patches(&noisy, 1, ClipMut::new(&mut out, frames, joints)?, &interrupt)
     })
 }

@@ -49,6 +49,7 @@ __all__ = [
     "slerp",
     "smooth",
     "smooth_body",
+    "smooth_patches",
     "to_euler",
     "trusted",
     "undevelop",
@@ -205,6 +206,11 @@ def smooth(
     /,
 ) -> tuple[Array, Array | None]: ...
 def smooth_body(q: Array, pilot: Array, confidence: Array | None, noise: NDArray[np.float64], /) -> Array: ...
+
+# filters/smooth/patches
+def smooth_patches(
+    q: Array, pilot: Array, confidence: Array | None, noise: NDArray[np.float64], rounds: int, /
+) -> Array: ...
 
 # filters/stream
 @final

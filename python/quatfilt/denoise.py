@@ -45,8 +45,8 @@ def denoise(
     motion_or_rotations : Motion or array_like, shape (frames, joints, 4) or (frames, 4)
         What to clean. Missing samples are filled in, unless ``gaps=`` says otherwise.
     method : str or list of str, default "auto"
-        The filter, or filters that run in this order. "auto" is `nonlocal_pose_means` with a bandwidth from the estimated
-        noise or, with a preset, the preset's chain.
+        The filter, or filters that run in this order. "auto" is `despike` and then ``smooth(joints="together")`` or, with a
+        preset, the preset's chain.
     translation : bool, default True
         Whether a motion's root translation is filtered too, by each step in its own way; gaps in it are then filled along
         straight lines. A step with ``search_radius=None`` leaves it alone: a pose that comes back comes back elsewhere.
@@ -89,7 +89,7 @@ def denoise(
     (240, 4)
     >>> twice = qf.denoise(noisy, method=["nonlocal_pose_means", "bilateral"], radius=2)
     >>> error = lambda q: float(np.degrees(qf.geodesic_distance(swing, q)).mean())
-    >>> error(twice) < error(qf.denoise(noisy)) < error(noisy)
+    >>> error(qf.denoise(noisy)) < error(twice) < error(noisy)
     True
     """
     if not isinstance(translation, (bool, np.bool_)):

@@ -17,6 +17,7 @@ from quatfilt.filters import (
     one_euro,
     orientation_filter,
     savgol,
+    smooth,
     wavelet,
     weighted_moving_mean,
 )
@@ -73,6 +74,7 @@ FILTERS: Final[dict[str, Method]] = {
     "one_euro": Method(one_euro.one_euro, one_euro.with_translation),
     "orientation_filter": Method(orientation_filter.orientation_filter, orientation_filter.with_translation),
     "savgol": Method(savgol.savgol, savgol.with_translation, hidden=("deriv",)),
+    "smooth": Method(smooth.smooth, smooth.with_translation),
     "wavelet": Method(wavelet.wavelet, wavelet.with_translation, angles=("threshold",)),
     "weighted_moving_mean": Method(
         weighted_moving_mean.weighted_moving_mean, weighted_moving_mean.with_translation

@@ -27,34 +27,37 @@ class Preset:
     reasons: Mapping[str, str] = field(default_factory=dict)
 
 
-BEST: Final = Preset("what method='auto' runs", {"nonlocal_pose_means": {}})
+BEST: Final = Preset("what method='auto' runs", {"despike": {}, "smooth": {"joints": "together"}})
 """The best chain that this version has, for clips of which nothing is known."""
 
 PRESETS: Final[dict[str, Preset]] = {
     "optical": Preset(
-        "markers and infrared cameras, 100 frames per second and more: little noise, hidden markers",
-        {"nonlocal_pose_means": {}},
+        "markers and infrared cameras, 100 frames per second and more: little noise, swapped and hidden markers",
+        {"despike": {}, "smooth": {"joints": "together"}},
         {"max_gap": 0.5},
         {
-            "nonlocal_pose_means": "little noise at a high frame rate leaves many alike poses to average",
+            "despike": "markers that change places throw a limb about for a frame or two",
+            "smooth.joints": "white noise at a high frame rate is what the automatic smoother is for, and a body repeats itself",
             "max_gap": "a limb hidden for longer may have done anything; longer gaps stay visible as such",
         },
     ),
     "inertial": Preset(
         "suits of gyroscopes and accelerometers: smooth but for a little white noise; drift is left alone",
-        {"nonlocal_pose_means": {}},
+        {"smooth": {}},
         {"max_gap": 0.1},
         {
-            "nonlocal_pose_means": "takes no more than the noise it finds: the suit's own Kalman filter has smoothed before",
+            "smooth": "takes no more than the noise it finds: the suit's own Kalman filter has smoothed before",
             "max_gap": "lost packets last some frames; a longer gap is a sensor that failed",
         },
     ),
     "video": Preset(
         "poses estimated from video, 24 to 60 frames per second: strong noise that hangs together in time",
-        {"nonlocal_pose_means": {"weights": "joint"}},
+        {"despike": {}, "nonlocal_pose_means": {"weights": "joint"}, "butterworth": {"cutoff": 6.0}},
         {"max_gap": 2 / 3},
         {
+            "despike": "detectors mistake left for right for a frame or two",
             "nonlocal_pose_means.weights": "each joint is estimated well or badly for itself",
+            "butterworth.cutoff": "hertz, Pose2Sim's default: what hangs together in time looks like motion to smoothers of white noise",
             "max_gap": "20 frames of 30 per second, as in Pose2Sim: trackers lose a limb for so long behind another",
         },
     ),

@@ -434,6 +434,7 @@ WRONG_OPTIONS = [
     ("order", 0, ValueError, "expected an integer of at least 1 and at most 20, got 0"),
     ("order", 21, ValueError, "expected an integer of at least 1 and at most 20, got 21"),
     ("order", 4.0, TypeError, "expected an integer of at least 1 and at most 20, got float"),
+    ("joints", "all", ValueError, "expected one of 'apart', 'together', got 'all'"),
     ("strength", -0.1, ValueError, f"{NOT_NEGATIVE} and at most 1e+06, got -0.1"),
     ("strength", 2e6, ValueError, f"{NOT_NEGATIVE} and at most 1e+06, got 2000000.0"),
     ("strength", math.nan, ValueError, f"{NOT_NEGATIVE} and at most 1e+06, got nan"),

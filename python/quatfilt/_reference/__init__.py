@@ -24,6 +24,7 @@ from quatfilt._reference.filters.one_euro import one_euro
 from quatfilt._reference.filters.orientation_filter import orientation_filter
 from quatfilt._reference.filters.savgol import savgol, savgol_derivative
 from quatfilt._reference.filters.smooth.body import smooth_body
+from quatfilt._reference.filters.smooth.patches import smooth_patches
 from quatfilt._reference.filters.smooth.smooth import smooth
 from quatfilt._reference.filters.weighted_moving_mean import weighted_moving_mean
 from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
@@ -75,6 +76,7 @@ __all__ = [
     "slerp",
     "smooth",
     "smooth_body",
+    "smooth_patches",
     "to_euler",
     "trusted",
     "undevelop",

@@ -13,11 +13,13 @@ from typing import Any
 import numpy as np
 
 from quatfilt._typing import Array
+from quatfilt.denoise import denoise
 from quatfilt.evaluation.baselines import BASELINES, SETTINGS, Baseline
 from quatfilt.evaluation.channels import VIEWS
 from quatfilt.evaluation.noises import SIGMA
 from quatfilt.filters.bilateral import bilateral
 from quatfilt.filters.nonlocal_pose_means import nonlocal_pose_means
+from quatfilt.filters.smooth import smooth
 
 
 @dataclass(frozen=True)
@@ -147,6 +149,13 @@ ROWS: dict[str, Row] = {
         _pose_means("NLPM, per joint", "the same, weights for each joint", weights="joint"),
         _pose_means_oracle("NLPM, oracle"),
         _pose_means_oracle("NLPM, per joint, oracle", weights="joint"),
+        _fixed("automatic smoother", "`smooth`, the defaults", lambda clips: smooth(clips.rotations)),
+        _fixed(
+            "automatic smoother, together",
+            '`smooth(joints="together")`',
+            lambda clips: clips.each(partial(smooth, joints="together")),
+        ),
+        _fixed("auto", "`denoise`: despike, then the smoother before", lambda clips: clips.each(denoise)),
     )
 }
 """In the order of the tables."""

@@ -38,6 +38,8 @@ mod _core {
     #[pymodule_export]
     use super::filters::savgol::{savgol, savgol_derivative};
     #[pymodule_export]
+    use super::filters::smooth::patches::smooth_patches;
+    #[pymodule_export]
     use super::filters::smooth::{smooth, smooth_body};
     #[pymodule_export]
     use super::filters::stream::PoseStream;

@@ -4,7 +4,7 @@
 
 use quatfilt_core::filters::development::Input;
 use quatfilt_core::filters::nonlocal_pose_means::{Chart, Distance, NonlocalPoseMeans, Weights};
-use quatfilt_core::filters::smooth::{Noisy, REFERENCE_SIGMA, Smoother, smooth_body};
+use quatfilt_core::filters::smooth::{Noisy, REFERENCE_SIGMA, Smoother, smooth_body, smooth_patches};
 use quatfilt_core::parallel::Interrupt;
 use quatfilt_core::rotations::{mean, quaternion};
 use quatfilt_core::simd::Level;
@@ -86,7 +86,7 @@ fn filters<T: Real>() -> Result<Vec<(&'static str, Vec<T>)>, Error> {
 }
 
 /// Automatic smoothing of each joint, and of all together.
-fn smoothers<T: Real>(clip: ClipView<'_, T>) -> Result<[(&'static str, Vec<T>); 2], Error> {
+fn smoothers<T: Real>(clip: ClipView<'_, T>) -> Result<[(&'static str, Vec<T>); 3], Error> {
     let (frames, joints) = (clip.frames(), clip.joints());
     let interrupt = Interrupt::new();
     let noise = vec![0.05; joints];
@@ -94,12 +94,13 @@ fn smoothers<T: Real>(clip: ClipView<'_, T>) -> Result<[(&'static str, Vec<T>); 
     let input = Input { clip, confidence: None, reference_sigma: &vec![REFERENCE_SIGMA; joints] };
     let smoother = Smoother::new(frames, noise.clone(), 0.0);
     input.filter(&smoother, None, ClipMut::new(&mut pilot, frames, joints)?, &interrupt)?;
-    let mut body = pilot.clone();
+    let (mut body, mut patches) = (pilot.clone(), pilot.clone());
     let noisy =
         Noisy { clip, pilot: ClipView::new(&pilot, frames, joints)?, confidence: None, noise: &noise };
     smooth_body(&noisy, ClipMut::new(&mut body, frames, joints)?, &interrupt)?;
-    assert!(body != pilot);
-    Ok([("smooth", pilot), ("smooth_body", body)])
+    smooth_patches(&noisy, 2, ClipMut::new(&mut patches, frames, joints)?, &interrupt)?;
+    assert!(body != pilot && patches != pilot);
+    Ok([("smooth", pilot), ("smooth_body", body), ("smooth_patches", patches)])
 }
 
 fn at_level<T: Real>(level: Level) -> Result<Vec<(&'static str, Vec<u64>)>, Error> {

@@ -9,12 +9,14 @@
 //! - `penalised`: the smoother;
 //! - `joint`: one joint along its axes;
 //! - `about`: the vectors of all joints about a pilot;
-//! - `body`: all joints together along the axes of the body.
+//! - `body`: all joints together along the axes of the body;
+//! - `patches`: all joints by groups of similar patches.
 
 mod about;
 mod axes;
 mod body;
 mod joint;
+mod patches;
 mod penalised;
 mod spectrum;
 mod strength;
@@ -26,6 +28,7 @@ use crate::error::check_length;
 use crate::parallel::Interrupt;
 pub use about::Noisy;
 pub use body::smooth_body;
+pub use patches::smooth_patches;
 use strength::Candidates;
 
 /// Deviation in frames of the Gaussian mask that makes the first reference path.
