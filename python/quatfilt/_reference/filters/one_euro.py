@@ -88,5 +88,5 @@ def one_euro(
 
 
 def low_pass(cutoff: float, elapsed: float) -> float:
-    """The share of a sample in a low pass of first order, `elapsed` frames after the one before."""
+    """Return the share of a sample in a low pass of first order, `elapsed` frames after the one before."""
     return 1 / (1 + 1 / (2 * np.pi * cutoff * elapsed))

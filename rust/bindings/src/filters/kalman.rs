@@ -23,12 +23,21 @@ pub(crate) fn filter(
     measurement_noise: &Bound<'_, PyAny>,
     lookahead: isize,
 ) -> PyResult<Py<PyAny>> {
-    let filter = Kalman {
+    let filter = parameters(process_noise, measurement_noise, lookahead)?;
+    by_dtype!(q, T => filtered::<T>(py, &filter, q, confidence))
+}
+
+/// The filter of these arguments.
+pub(super) fn parameters(
+    process_noise: &Bound<'_, PyAny>,
+    measurement_noise: &Bound<'_, PyAny>,
+    lookahead: isize,
+) -> PyResult<Kalman> {
+    Ok(Kalman {
         process_noise: numbers("process_noise", process_noise)?,
         measurement_noise: numbers("measurement_noise", measurement_noise)?,
         lookahead: usize::try_from(lookahead).ok(),
-    };
-    by_dtype!(q, T => filtered::<T>(py, &filter, q, confidence))
+    })
 }
 
 fn filtered<T: Real + Element>(
@@ -125,7 +134,8 @@ pub(crate) fn kalman_vectors_ratio(
     Ok(PyArray1::from_vec(py, result).into_any().unbind())
 }
 
-fn numbers(name: &str, array: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+/// A copy of an array of float64.
+pub(super) fn numbers(name: &str, array: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     let array = input::<f64>(name, array)?;
     Ok(elements(name, &array)?.to_vec())
 }

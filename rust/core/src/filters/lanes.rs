@@ -26,7 +26,8 @@ pub(super) struct Group<'a, T> {
 impl<T: Real> Group<'_, T> {
     /// One number per joint of the clip as one per lane, 1 where there is no joint.
     pub(super) fn lane(&self, numbers: &[f64]) -> Lane {
-        std::array::from_fn(|lane| if lane < self.joints { numbers[self.first + lane] } else { 1.0 })
+        let numbers = &numbers[self.first..self.first + self.joints];
+        std::array::from_fn(|lane| numbers.get(lane).copied().unwrap_or(1.0))
     }
 
     /// The unit quaternion of a frame.
@@ -63,6 +64,12 @@ impl<T: Real> Group<'_, T> {
         }
         rows
     }
+}
+
+/// Numbers of joints as lanes, 1 where there is no joint.
+pub(super) fn lanes(numbers: &[f64]) -> Vec<Lane> {
+    let lane = |numbers: &[f64]| std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(1.0));
+    numbers.chunks(LANES).map(lane).collect()
 }
 
 /// Filters a clip group by group: `filter` goes through the frames of a group and gives its [`Group::rows`], and what else

@@ -14,7 +14,7 @@
 
 mod covariance;
 mod ratio;
-mod rotations;
+pub(super) mod rotations;
 mod vectors;
 
 pub use ratio::{process_noise, vectors_ratio};
@@ -102,13 +102,13 @@ impl Kalman {
         for last in reach..frames - 1 {
             interrupt.check()?;
             let mut later = Later::nothing(&records[last]);
-            rotations::backward(&mut records[last - reach..last], &variances.process, &mut later, false);
+            rotations::backward(&mut records[last - reach..last], variances, &mut later, false);
             records[last - reach].rotation = later.rotation;
         }
         let mut later = Later::nothing(&records[frames - 1]);
         for stretch in records[frames - 1 - reach..frames - 1].rchunks_mut(STRETCH) {
             interrupt.check()?;
-            rotations::backward(stretch, &variances.process, &mut later, true);
+            rotations::backward(stretch, variances, &mut later, true);
         }
         Ok(())
     }

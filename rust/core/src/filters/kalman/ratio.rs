@@ -176,7 +176,7 @@ fn judge(
         [covariance.pose, covariance.cross, covariance.velocity]
     });
     let mut later = Later::nothing(&records[last]);
-    rotations::backward(&mut records[..last], &variances.process, &mut later, true);
+    rotations::backward(&mut records[..last], &variances, &mut later, true);
     let (mut residuals, mut shares): (Lane, Lane) = ([0.0; LANES], [0.0; LANES]);
     for (frame, ((sample, trust), record)) in samples.iter().zip(&*records).enumerate().rev() {
         for i in 0..LANES {

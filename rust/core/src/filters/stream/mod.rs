@@ -11,7 +11,9 @@
 
 mod bilateral;
 mod ends;
+mod kalman;
 mod nonlocal_pose_means;
+mod one_euro;
 mod pose;
 
 use crate::Error;
