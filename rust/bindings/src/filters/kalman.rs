@@ -1,6 +1,6 @@
 //! The Kalman filter of constant velocity, its smoother, and how stiff they are to be.
 
-use crate::array::{by_dtype, clip, clip_mut, elements, input, output, run_interruptible};
+use crate::array::{by_dtype, clip, clip_mut, elements, input, numbers, output, run_interruptible};
 use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use quatfilt_core::Real;
@@ -132,10 +132,4 @@ pub(crate) fn kalman_vectors_ratio(
         })?
     });
     Ok(PyArray1::from_vec(py, result).into_any().unbind())
-}
-
-/// A copy of an array of float64.
-pub(super) fn numbers(name: &str, array: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    let array = input::<f64>(name, array)?;
-    Ok(elements(name, &array)?.to_vec())
 }

@@ -1,7 +1,6 @@
 //! The 1€ filter.
 
-use super::kalman::numbers;
-use crate::array::{by_dtype, clip, clip_mut, elements, input, output, run_interruptible};
+use crate::array::{by_dtype, clip, clip_mut, elements, input, numbers, output, run_interruptible};
 use numpy::{Element, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use quatfilt_core::Real;

@@ -13,7 +13,7 @@
 use super::lanes::{self, Group, LANES, Lane, of_lane, scaled, select, set_lane};
 use crate::error::check_length;
 use crate::parallel::Interrupt;
-use crate::rotations::quaternion::{self, between, exp_one, log_short, product};
+use crate::rotations::quaternion::{self, between, exp_one, log_short, product, unit};
 use crate::simd::multiversion;
 use crate::{ClipMut, ClipView, Error, Real};
 
@@ -75,7 +75,8 @@ impl OneEuro {
             }
             return quaternion::normalize(clip.data(), out);
         }
-        let filter = |group: &Group<'_, T>| self.run(group, frames, interrupt);
+        let filter =
+            |group: &Group<'_, T>, records: &mut Vec<Record>| self.run(group, records, frames, interrupt);
         let root = lanes::run(clip, confidence, out, frames * joints * NANOSECONDS, filter)?;
         if let (Some(Translation { values, out }), Some(root)) = (translation, root) {
             follow(&root, values, out);
@@ -87,15 +88,14 @@ impl OneEuro {
     fn run<T: Real>(
         &self,
         group: &Group<'_, T>,
+        records: &mut Vec<Record>,
         frames: usize,
         interrupt: &Interrupt,
     ) -> Result<(Vec<T>, Shares), Error> {
-        let mut records = vec![Record::STILL; frames];
+        records.clear();
+        records.resize(frames, Record::STILL);
         for (frame, record) in records.iter_mut().enumerate() {
-            for lane in 0..group.joints {
-                set_lane(&mut record.rotation, lane, group.sample(frame, lane));
-                record.trust[lane] = group.trust(frame, lane);
-            }
+            group.load(frame, &mut record.rotation, &mut record.trust);
         }
         let cutoffs = Cutoffs {
             least: group.lane(&self.min_cutoff),
@@ -107,7 +107,7 @@ impl OneEuro {
             interrupt.check()?;
             forward(stretch, &cutoffs, &mut state);
         }
-        let rows = group.rows(|frame, lane| of_lane(&records[frame].rotation, lane));
+        let rows = group.rows(|frame| &records[frame].rotation);
         let shares = records.iter().map(|record| record.share[0]).collect();
         Ok((rows, Shares { begin: group.begin(0), shares }))
     }
@@ -148,7 +148,7 @@ pub(super) struct Cutoffs {
 /// One frame of [`LANES`] joints.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Record {
-    /// The sample, and then the result.
+    /// The sample, of any length, and then the result.
     pub(super) rotation: [Lane; 4],
     /// Confidence of the sample.
     pub(super) trust: Lane,
@@ -192,7 +192,7 @@ multiversion! {
         for record in records {
             let mut after = *record;
             for i in 0..LANES {
-                let (sample, trust) = (of_lane(&after.rotation, i), after.trust[i]);
+                let (sample, trust) = (unit(of_lane(&after.rotation, i)), after.trust[i]);
                 let (before, velocity) = (of_lane(&now.result, i), of_lane(&now.velocity, i));
                 let measured = trust > 0.0;
                 let begun = now.elapsed[i] > 0.0;

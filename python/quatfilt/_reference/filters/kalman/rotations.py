@@ -12,8 +12,8 @@ import numpy as np
 from quatfilt._reference._arrays import Mask, Reals
 from quatfilt._reference.filters.kalman.covariance import Covariance
 from quatfilt._reference.filters.nonlocal_pose_means import in_hemisphere_of
-from quatfilt._reference.motion.skeleton import rotate
-from quatfilt._reference.rotations.quaternion import between, exp, log_short, multiply, normalize
+from quatfilt._reference.filters.ways import carried, moved, way_between
+from quatfilt._reference.rotations.quaternion import normalize
 
 FARTHEST_FORECAST = 0.2
 """Radians: deviation of a forecast beyond which it is not followed. The pose may then be anywhere, and a forecast that
@@ -187,24 +187,6 @@ def smoothed(
         result.append(np.where(heard[:, None], moved(state.rotation, way), state.rotation))
         after = state
     return result
-
-
-def moved(rotation: Reals, way: Reals) -> Reals:
-    """Return the rotation at the end of a way, a rotation vector in the frame of its start."""
-    return multiply(rotation, exp(way / 2))
-
-
-def way_between(start: Reals, end: Reals) -> Reals:
-    """Return the shorter way from one rotation to another, a rotation vector in the frame of its start."""
-    return 2 * log_short(between(start, end))
-
-
-def carried(vector: Reals, way: Reals) -> Reals:
-    """Carry a vector of the tangent space along a way by parallel transport, into the frame of the way's end.
-
-    Of the turn of the frame along a geodesic, parallel transport makes up for one half.
-    """
-    return rotate(exp(-way / 4), vector)
 
 
 def either(condition: Mask, yes: State, no: State) -> State:

@@ -5,7 +5,7 @@
 
 use super::covariance::Covariance;
 use crate::filters::lanes::{LANES, Lane, of_lane, scaled, select, set_lane};
-use crate::rotations::quaternion::{between, conjugate_one, exp_one, log_short, product, rotate};
+use crate::rotations::quaternion::{between, conjugate_one, exp_one, log_short, product, rotate, unit};
 use crate::simd::multiversion;
 
 /// Radians: deviation of a forecast beyond which it is not followed. The pose may then be anywhere, and a forecast that
@@ -28,7 +28,7 @@ pub(in crate::filters) struct Variances {
 /// One frame of [`LANES`] joints.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::filters) struct Record {
-    /// The sample; later the pose, or where the forecast was left; in the end the smoothed pose.
+    /// The sample, of any length; later the pose, or where the forecast was left; in the end the smoothed pose.
     pub(in crate::filters) rotation: [Lane; 4],
     /// Confidence of the sample.
     pub(in crate::filters) trust: Lane,
@@ -271,7 +271,7 @@ pub(in crate::filters) fn begin(record: &mut Record, variances: &Variances, fore
     for i in 0..LANES {
         let measured = record.trust[i] > 0.0;
         let trust = if measured { record.trust[i] } else { 1.0 };
-        record.set_state(i, State::first(record.rotation(i), trust, variances.measurement[i]));
+        record.set_state(i, State::first(unit(record.rotation(i)), trust, variances.measurement[i]));
         forecasts.measured[i] = if measured { 1.0 } else { 0.0 };
     }
 }
@@ -284,7 +284,7 @@ multiversion! {
         for record in rest {
             let mut after = *record;
             for i in 0..LANES {
-                let (sample, trust) = (after.rotation(i), after.trust[i]);
+                let (sample, trust) = (unit(after.rotation(i)), after.trust[i]);
                 let (process, variance) = (variances.process[i], variances.measurement[i]);
                 let (state, error) = before.state(i).step(sample, trust, process, variance);
                 let measured = trust > 0.0;
