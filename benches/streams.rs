@@ -1,11 +1,13 @@
 //! Streams: a clip pushed pose by pose, with a new stream for each.
 
-use quatfilt_benches::clips;
+use quatfilt_benches::clips::{self, NOISE};
 use quatfilt_benches::settings;
 use quatfilt_benches::timer::Timer;
 use quatfilt_core::Error;
 use quatfilt_core::filters::bilateral::{Bilateral, Kernel};
+use quatfilt_core::filters::kalman::Kalman;
 use quatfilt_core::filters::nonlocal_pose_means::{Chart, NonlocalPoseMeans, Weights};
+use quatfilt_core::filters::one_euro::OneEuro;
 use quatfilt_core::filters::stream::PoseStream;
 use quatfilt_core::window::Boundary;
 
@@ -43,6 +45,22 @@ fn main() -> Result<(), Error> {
                 push(filter.stream()?, &q)
             })?;
         }
+        for (change, lookahead) in [("lookahead=0", 0), ("lookahead=10", 10)] {
+            let filter = Kalman {
+                process_noise: vec![0.1 * NOISE; joints],
+                measurement_noise: vec![NOISE; joints],
+                lookahead: Some(lookahead),
+            };
+            timer.levels::<f64, _, _>(&format!("streams/kalman/{change}"), size, || {
+                push(filter.stream()?, &q)
+            })?;
+        }
+        let filter = OneEuro {
+            min_cutoff: vec![0.01; joints],
+            beta: vec![0.1; joints],
+            derivative_cutoff: vec![0.01; joints],
+        };
+        timer.levels::<f64, _, _>("streams/one_euro", size, || push(filter.stream()?, &q))?;
     }
     Ok(())
 }

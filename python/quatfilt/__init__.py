@@ -15,14 +15,16 @@ from quatfilt.filters.butterworth import butterworth
 from quatfilt.filters.despike import despike
 from quatfilt.filters.gaps import fill_gaps
 from quatfilt.filters.gaussian import gaussian
-from quatfilt.filters.kalman import kalman
+from quatfilt.filters.kalman import kalman, kalman_noises
 from quatfilt.filters.nonlocal_pose_means import nonlocal_pose_means
 from quatfilt.filters.one_euro import one_euro
 from quatfilt.filters.orientation_filter import orientation_filter
 from quatfilt.filters.savgol import savgol
 from quatfilt.filters.smooth import smooth
 from quatfilt.filters.stream.bilateral import BilateralStream
+from quatfilt.filters.stream.kalman import KalmanStream
 from quatfilt.filters.stream.nonlocal_pose_means import NonlocalPoseMeansStream
+from quatfilt.filters.stream.one_euro import OneEuroStream
 from quatfilt.filters.wavelet import wavelet
 from quatfilt.filters.weighted_moving_mean import weighted_moving_mean
 from quatfilt.formats.files import read_motion, write_motion
@@ -48,8 +50,10 @@ __all__ = [
     "EndSite",
     "FileAccessError",
     "FileFormatError",
+    "KalmanStream",
     "Motion",
     "NonlocalPoseMeansStream",
+    "OneEuroStream",
     "QuatfiltError",
     "Report",
     "Skeleton",
@@ -68,6 +72,7 @@ __all__ = [
     "get_backend",
     "get_num_threads",
     "kalman",
+    "kalman_noises",
     "log",
     "mean",
     "metrics",

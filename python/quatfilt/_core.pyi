@@ -27,6 +27,7 @@ __all__ = [
     "is_debug_build",
     "kalman",
     "kalman_process_noise",
+    "kalman_stream",
     "kalman_vectors",
     "kalman_vectors_ratio",
     "log",
@@ -37,6 +38,7 @@ __all__ = [
     "nonlocal_pose_means_stream",
     "normalize",
     "one_euro",
+    "one_euro_stream",
     "orientation_filter",
     "read_amc",
     "read_asf",
@@ -234,6 +236,11 @@ def bilateral_stream(
     /,
 ) -> PoseStream: ...
 
+# filters/stream/kalman
+def kalman_stream(
+    process_noise: NDArray[np.float64], measurement_noise: NDArray[np.float64], lookahead: int, /
+) -> PoseStream: ...
+
 # filters/stream/nonlocal_pose_means
 def nonlocal_pose_means_stream(
     bandwidth: NDArray[np.float64],
@@ -245,6 +252,14 @@ def nonlocal_pose_means_stream(
     chart: str,
     boundary: str,
     lookahead: int,
+    /,
+) -> PoseStream: ...
+
+# filters/stream/one_euro
+def one_euro_stream(
+    min_cutoff: NDArray[np.float64],
+    beta: NDArray[np.float64],
+    derivative_cutoff: NDArray[np.float64],
     /,
 ) -> PoseStream: ...
 

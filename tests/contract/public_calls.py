@@ -67,9 +67,13 @@ CALLS = {
     "BilateralStream": lambda a, _b, _v: streamed(
         qf.BilateralStream(sigma_angle=1.0, iterations=2, lookahead=2), a
     ),
+    "KalmanStream": lambda a, _b, _v: streamed(
+        qf.KalmanStream(process_noise=0.1, measurement_noise=0.5, lookahead=7), a
+    ),
     "NonlocalPoseMeansStream": lambda a, _b, _v: streamed(
         qf.NonlocalPoseMeansStream(bandwidth=1.0, lookahead=7), a
     ),
+    "OneEuroStream": lambda a, _b, _v: streamed(qf.OneEuroStream(min_cutoff=0.1, beta=0.1), a),
     "add_gaussian_noise": lambda a, _b, _v: qf.add_gaussian_noise(a, sigma=0.1, rng=1),
     "add_impulse_noise": lambda a, _b, _v: qf.add_impulse_noise(a, probability=0.1, rng=1),
     "bilateral": lambda a, _b, _v: qf.bilateral(with_gaps(a), sigma_angle=1.0, iterations=2),
@@ -83,6 +87,7 @@ CALLS = {
     "gaussian": lambda a, _b, _v: qf.gaussian(with_gaps(a), sigma=2.5),
     "geodesic_distance": lambda a, b, _v: qf.geodesic_distance(a, b),
     "kalman": lambda a, _b, _v: qf.kalman(with_gaps(a), lookahead=2),
+    "kalman_noises": lambda a, _b, _v: qf.kalman_noises(with_gaps(a))[0],
     "log": lambda a, _b, _v: qf.log(a),
     "mean": lambda a, _b, _v: qf.mean(with_gaps(a)),
     "multiply": lambda a, b, _v: qf.multiply(a, b),

@@ -16,11 +16,17 @@ from scipy.spatial.transform import Rotation
 
 STREAMS = {
     "BilateralStream": lambda **options: qf.BilateralStream(**{"lookahead": 2, "iterations": 2} | options),
+    "KalmanStream": lambda **options: qf.KalmanStream(
+        **{"process_noise": 0.01, "measurement_noise": 0.03, "lookahead": 3} | options
+    ),
     "NonlocalPoseMeansStream": lambda **options: qf.NonlocalPoseMeansStream(
         **{"bandwidth": 0.05, "lookahead": 3} | options
     ),
+    "OneEuroStream": lambda **options: qf.OneEuroStream(**{"min_cutoff": 0.05, "beta": 0.1} | options),
 }
-"""From options to a stream of some latency."""
+"""From options to a stream, of some latency if it can have one."""
+
+LATENCIES = {"BilateralStream": 4, "KalmanStream": 3, "NonlocalPoseMeansStream": 3, "OneEuroStream": 0}
 
 every_stream = pytest.mark.parametrize("name", STREAMS)
 
@@ -95,9 +101,9 @@ def test_lengths_far_from_one_are_refused(name, scale, norm):
 def test_a_pose_that_is_refused_leaves_the_stream_as_it_was(name, pose, kind, message):
     q = clip()
     stream = STREAMS[name]()
-    stream.push(q[0])
+    poses = [stream.push(q[0])]
     assert refused(kind, stream.push, pose) == message
-    poses = [came for came in map(stream.push, q[1:]) if came is not None]
+    poses = [came for came in [*poses, *map(stream.push, q[1:])] if came is not None]
     result = np.concatenate([poses, stream.flush()])
     np.testing.assert_array_equal(result, streams.run(STREAMS[name](), q))
 
@@ -174,9 +180,10 @@ def test_no_joints(name):
 def test_short_clips(name, frames):
     q = clip(frames)
     stream = STREAMS[name]()
-    for pose in q:
-        assert stream.push(pose) is None
-    assert stream.flush().shape == (q.shape if frames else (0, 0, 4))
+    came = [stream.push(pose) is not None for pose in q]
+    assert came == [stream.latency == 0] * frames
+    pending = 0 if stream.latency == 0 else frames
+    assert stream.flush().shape == ((pending, *q.shape[1:]) if frames else (0, 0, 4))
 
 
 @every_stream
@@ -240,10 +247,11 @@ def test_nothing_goes_on_after_the_end(name):
 def test_the_latency_is_stated(name):
     stream = STREAMS[name]()
     assert isinstance(stream.latency, int)
-    assert stream.latency > 0
+    assert stream.latency == LATENCIES[name]
     with pytest.raises(AttributeError):
         stream.latency = 0
-    assert STREAMS[name](lookahead=0).latency == 0
+    if stream.latency:
+        assert STREAMS[name](lookahead=0).latency == 0
 
 
 # ---- one at a time
@@ -272,10 +280,11 @@ class Meddling:
 def test_calls_at_the_same_time_are_refused(name):
     q = clip()
     stream = STREAMS[name]()
+    poses = []
     for meddling in (Meddling(q[0], stream.flush), Meddling(q[1], lambda: stream.push(q[7]))):
-        stream.push(meddling)
+        poses.append(stream.push(meddling))
         assert meddling.said == "stream: expected one call at a time, got one during another"
-    poses = [came for came in map(stream.push, q[2:]) if came is not None]
+    poses = [came for came in [*poses, *map(stream.push, q[2:])] if came is not None]
     result = np.concatenate([poses, stream.flush()])
     np.testing.assert_array_equal(result, streams.run(STREAMS[name](), q))
 
@@ -340,7 +349,48 @@ RADIUS = "expected an integer of at least 1 and at most 1000"
 MIRROR = "boundary: expected one of 'nearest', 'linear', got 'mirror': it shows later frames before the first"
 LINEAR = "boundary: expected 'nearest' with lookahead=0, got 'linear'; the velocity at the start needs the second frame"
 
+SAMPLE = "a stream has not seen its data, measure a sample with kalman_noises"
+
 WRONG_OPTIONS = {
+    "KalmanStream": [
+        (
+            {"process_noise": "auto"},
+            ValueError,
+            f"process_noise: expected a number or one per joint, got 'auto'; {SAMPLE}",
+        ),
+        (
+            {"measurement_noise": "auto"},
+            ValueError,
+            f"measurement_noise: expected a number or one per joint, got 'auto'; {SAMPLE}",
+        ),
+        ({"process_noise": -1}, ValueError, "process_noise: expected a number of at least 0, got -1"),
+        (
+            {"process_noise": [0, -1]},
+            ValueError,
+            "process_noise[1]: expected a number of at least 0, got -1.0",
+        ),
+        ({"measurement_noise": 0}, ValueError, f"measurement_noise: {POSITIVE}, got 0"),
+        ({"measurement_noise": [0.1, np.nan]}, ValueError, f"measurement_noise[1]: {POSITIVE}, got nan"),
+        ({"fps": 0}, ValueError, f"fps: {POSITIVE}, got 0"),
+        (
+            {"lookahead": 1001},
+            ValueError,
+            "lookahead: expected an integer of at least 0 and at most 1000, got 1001",
+        ),
+        (
+            {"lookahead": None},
+            TypeError,
+            "lookahead: expected an integer of at least 0 and at most 1000, got NoneType",
+        ),
+    ],
+    "OneEuroStream": [
+        ({"min_cutoff": 0}, ValueError, f"min_cutoff: {POSITIVE}, got 0"),
+        ({"min_cutoff": "auto"}, TypeError, f"min_cutoff: {POSITIVE}, got str"),
+        ({"beta": -1}, ValueError, "beta: expected a number of at least 0, got -1"),
+        ({"beta": [0, math.inf]}, ValueError, "beta[1]: expected a number of at least 0, got inf"),
+        ({"derivative_cutoff": [1, 0]}, ValueError, f"derivative_cutoff[1]: {POSITIVE}, got 0.0"),
+        ({"fps": True}, TypeError, f"fps: {POSITIVE}, got bool"),
+    ],
     "BilateralStream": [
         ({"radius": -1}, ValueError, "radius: expected an integer of at least 0 and at most 1000, got -1"),
         (
@@ -445,7 +495,16 @@ def test_options_are_keyword_only(name):
 
 
 @pytest.mark.parametrize(
-    ("name", "option"), [("BilateralStream", "sigma_angle"), ("NonlocalPoseMeansStream", "bandwidth")]
+    ("name", "option"),
+    [
+        ("BilateralStream", "sigma_angle"),
+        ("KalmanStream", "process_noise"),
+        ("KalmanStream", "measurement_noise"),
+        ("NonlocalPoseMeansStream", "bandwidth"),
+        ("OneEuroStream", "min_cutoff"),
+        ("OneEuroStream", "beta"),
+        ("OneEuroStream", "derivative_cutoff"),
+    ],
 )
 def test_one_strength_per_joint(name, option):
     strengths = np.array([0.02, 0.1, 0.3])
@@ -456,9 +515,14 @@ def test_one_strength_per_joint(name, option):
     stream = STREAMS[name](**{option: [0.1, 0.1]})
     message = refused(ValueError, stream.push, clip()[0])
     assert message == f"{option}: expected a number or one per joint, shape (3,), got (2,)"
-    assert stream.push(clip()[0, :2]) is None
+    assert (stream.push(clip()[0, :2]) is None) == (stream.latency > 0)
 
 
+TRUSTING = pytest.mark.parametrize("name", ["KalmanStream", "NonlocalPoseMeansStream", "OneEuroStream"])
+"""Streams that take confidences."""
+
+
+@TRUSTING
 @pytest.mark.parametrize(
     ("confidence", "kind", "message"),
     [
@@ -472,17 +536,16 @@ def test_one_strength_per_joint(name, option):
         ("high", TypeError, "confidence: expected real numbers, got dtype <U4"),
     ],
 )
-def test_wrong_confidences(confidence, kind, message):
-    stream = STREAMS["NonlocalPoseMeansStream"]()
+def test_wrong_confidences(name, confidence, kind, message):
+    stream = STREAMS[name]()
     assert refused(kind, stream.push, clip()[0], confidence) == message
-    np.testing.assert_array_equal(
-        streams.run(stream, clip()), streams.run(STREAMS["NonlocalPoseMeansStream"](), clip())
-    )
+    np.testing.assert_array_equal(streams.run(stream, clip()), streams.run(STREAMS[name](), clip()))
 
 
-def test_confidence_as_a_number_and_without_one():
+@TRUSTING
+def test_confidence_as_a_number_and_without_one(name):
     q = clip()
-    make = STREAMS["NonlocalPoseMeansStream"]
+    make = STREAMS[name]
     trust = np.random.default_rng(0).random(FRAMES)
     expected = streams.run(make(), q, np.repeat(trust[:, None], JOINTS, axis=1))
     np.testing.assert_array_equal(streams.run(make(), q, trust), expected)
@@ -506,6 +569,12 @@ def test_passes_that_no_memory_holds_are_refused():
     assert message == "radius: expected a window whose passes fit into 2 GiB"
 
 
+def test_a_lookahead_that_no_memory_holds_is_refused():
+    stream = qf.KalmanStream(process_noise=0.1, measurement_noise=0.1, lookahead=1000)
+    message = refused(ValueError, stream.push, np.tile([1.0, 0, 0, 0], (12_000, 1)))
+    assert message == "lookahead: expected so many frames as fit into 2 GiB"
+
+
 # ---- the module below
 
 
@@ -524,6 +593,13 @@ def test_the_module_below_guards_itself():
     ]:
         with pytest.raises(ValueError):
             make(bandwidth, *wrong)
+    for lookahead in (-1, 2**62):
+        with pytest.raises(ValueError):
+            _core.kalman_stream(bandwidth, bandwidth, lookahead)
+    with pytest.raises(ValueError):
+        _core.kalman_stream(bandwidth, bandwidth[:1], 1)
+    with pytest.raises(ValueError):
+        _core.one_euro_stream(bandwidth, bandwidth[:1], bandwidth)
     stream = make(bandwidth, *options)
     assert stream.latency == 1
     with pytest.raises(ValueError):

@@ -55,6 +55,12 @@ pub(crate) fn elements<'a, T: Element>(
     slice.ok_or_else(|| PyValueError::new_err(format!("{name}: expected a C-contiguous array")))
 }
 
+/// A copy of an array of float64.
+pub(crate) fn numbers(name: &str, array: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    let array = input::<f64>(name, array)?;
+    Ok(elements(name, &array)?.to_vec())
+}
+
 /// A borrowed clip `(frames, joints, 4)`.
 pub(crate) fn clip<'a, T: Real + Element>(
     name: &str,

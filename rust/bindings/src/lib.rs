@@ -46,7 +46,11 @@ mod _core {
     #[pymodule_export]
     use super::filters::stream::bilateral::bilateral_stream;
     #[pymodule_export]
+    use super::filters::stream::kalman::kalman_stream;
+    #[pymodule_export]
     use super::filters::stream::nonlocal_pose_means::nonlocal_pose_means_stream;
+    #[pymodule_export]
+    use super::filters::stream::one_euro::one_euro_stream;
     #[pymodule_export]
     use super::filters::weighted_moving_mean::weighted_moving_mean;
     #[pymodule_export]

@@ -7,8 +7,8 @@ Systems*, CHI 2012.
 import numpy as np
 
 from quatfilt._reference._arrays import Reals
-from quatfilt._reference.filters.kalman.rotations import moved, way_between
 from quatfilt._reference.filters.nonlocal_pose_means import in_hemisphere_of
+from quatfilt._reference.filters.ways import moved, way_between
 from quatfilt._reference.rotations.quaternion import norm, normalize
 
 
@@ -88,5 +88,5 @@ def one_euro(
 
 
 def low_pass(cutoff: float, elapsed: float) -> float:
-    """The share of a sample in a low pass of first order, `elapsed` frames after the one before."""
+    """Return the share of a sample in a low pass of first order, `elapsed` frames after the one before."""
     return 1 / (1 + 1 / (2 * np.pi * cutoff * elapsed))

@@ -29,12 +29,23 @@ def checked_boundary(boundary: Boundary, latency: int) -> Boundary:
     return chosen
 
 
-def strength(value: float | ArrayLike, name: str, *, infinite: bool = False) -> float | Array:
-    """Return a checked number, or a copy of one per joint; the first pose tells whether it fits."""
+def strength(
+    value: float | ArrayLike, name: str, *, zero: bool = False, infinite: bool = False
+) -> float | Array:
+    """Return a checked number above or from `zero`, or a copy of one per joint; the first pose tells whether it fits."""
+    bounds = {"at_least": 0.0} if zero else {"above": 0.0}
     if np.isscalar(value):
-        return _validation.number(value, name, above=0, infinite=infinite)
+        return _validation.number(value, name, **bounds, infinite=infinite)
     array = _validation.floats(value, name).copy()
-    return _validation.per_joint(array, name, array.size, above=0, infinite=infinite)
+    return _validation.per_joint(array, name, array.size, **bounds, infinite=infinite)
+
+
+def not_automatic(value: Any, name: str, instead: str) -> None:
+    """Refuse "auto", which the filter of the whole clip takes."""
+    if isinstance(value, str):
+        raise ValueError(  # noqa: TRY004 - "auto" is a value of the filter of the whole clip
+            f"{name}: expected a number or one per joint, got {value!r}; a stream has not seen its data, {instead}",
+        )
 
 
 class Stream(ABC):
@@ -117,4 +128,4 @@ class Stream(ABC):
         )
 
 
-__all__ = ["LONGEST_RADIUS", "Stream", "checked_boundary", "strength"]
+__all__ = ["LONGEST_RADIUS", "Stream", "checked_boundary", "not_automatic", "strength"]

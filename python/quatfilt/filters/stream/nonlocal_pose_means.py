@@ -99,11 +99,7 @@ class NonlocalPoseMeansStream(_stream.Stream):
         lookahead: int = 0,
         scalar_first: bool = True,
     ) -> None:
-        if isinstance(bandwidth, str):
-            raise ValueError(  # noqa: TRY004 - "auto" is a value of the filter of the whole clip
-                f"bandwidth: expected a number or one per joint, got {bandwidth!r}; a stream has not seen its data, "
-                "measure a sample with noise_level",
-            )
+        _stream.not_automatic(bandwidth, "bandwidth", "measure a sample with noise_level")
         if search_radius is None:
             raise ValueError(
                 "search_radius: expected a number of frames, got None; a stream has no whole clip"

@@ -1,6 +1,6 @@
 //! The Kalman filter of constant velocity, its smoother, and how stiff they are to be.
 
-use crate::array::{by_dtype, clip, clip_mut, elements, input, output, run_interruptible};
+use crate::array::{by_dtype, clip, clip_mut, elements, input, numbers, output, run_interruptible};
 use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use quatfilt_core::Real;
@@ -23,12 +23,21 @@ pub(crate) fn filter(
     measurement_noise: &Bound<'_, PyAny>,
     lookahead: isize,
 ) -> PyResult<Py<PyAny>> {
-    let filter = Kalman {
+    let filter = parameters(process_noise, measurement_noise, lookahead)?;
+    by_dtype!(q, T => filtered::<T>(py, &filter, q, confidence))
+}
+
+/// The filter of these arguments.
+pub(super) fn parameters(
+    process_noise: &Bound<'_, PyAny>,
+    measurement_noise: &Bound<'_, PyAny>,
+    lookahead: isize,
+) -> PyResult<Kalman> {
+    Ok(Kalman {
         process_noise: numbers("process_noise", process_noise)?,
         measurement_noise: numbers("measurement_noise", measurement_noise)?,
         lookahead: usize::try_from(lookahead).ok(),
-    };
-    by_dtype!(q, T => filtered::<T>(py, &filter, q, confidence))
+    })
 }
 
 fn filtered<T: Real + Element>(
@@ -123,9 +132,4 @@ pub(crate) fn kalman_vectors_ratio(
         })?
     });
     Ok(PyArray1::from_vec(py, result).into_any().unbind())
-}
-
-fn numbers(name: &str, array: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    let array = input::<f64>(name, array)?;
-    Ok(elements(name, &array)?.to_vec())
 }

@@ -1,6 +1,6 @@
 //! The 1€ filter.
 
-use crate::array::{by_dtype, clip, clip_mut, elements, input, output, run_interruptible};
+use crate::array::{by_dtype, clip, clip_mut, elements, input, numbers, output, run_interruptible};
 use numpy::{Element, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use quatfilt_core::Real;
@@ -21,16 +21,21 @@ pub(crate) fn one_euro(
     beta: &Bound<'_, PyAny>,
     derivative_cutoff: &Bound<'_, PyAny>,
 ) -> PyResult<(Py<PyAny>, Option<Py<PyAny>>)> {
-    let numbers = |name: &str, array: &Bound<'_, PyAny>| -> PyResult<Vec<f64>> {
-        let array = input::<f64>(name, array)?;
-        Ok(elements(name, &array)?.to_vec())
-    };
-    let filter = OneEuro {
+    let filter = parameters(min_cutoff, beta, derivative_cutoff)?;
+    by_dtype!(q, T => typed::<T>(py, &filter, q, translation, confidence))
+}
+
+/// The filter of these arguments.
+pub(super) fn parameters(
+    min_cutoff: &Bound<'_, PyAny>,
+    beta: &Bound<'_, PyAny>,
+    derivative_cutoff: &Bound<'_, PyAny>,
+) -> PyResult<OneEuro> {
+    Ok(OneEuro {
         min_cutoff: numbers("min_cutoff", min_cutoff)?,
         beta: numbers("beta", beta)?,
         derivative_cutoff: numbers("derivative_cutoff", derivative_cutoff)?,
-    };
-    by_dtype!(q, T => typed::<T>(py, &filter, q, translation, confidence))
+    })
 }
 
 fn typed<T: Real + Element>(

@@ -1,8 +1,10 @@
 //! Filters that go through time frame by frame: eight joints side by side, so that their recursions become vector code.
 
 use crate::parallel;
-use crate::rotations::quaternion::{dot, negative, unit};
+use crate::rotations::quaternion::{dot, unit};
+use crate::simd::multiversion;
 use crate::{ClipView, Error, Real};
+use std::sync::Mutex;
 
 /// Joints side by side: a vector of float64 at the widest level.
 pub(super) const LANES: usize = 8;
@@ -26,61 +28,108 @@ pub(super) struct Group<'a, T> {
 impl<T: Real> Group<'_, T> {
     /// One number per joint of the clip as one per lane, 1 where there is no joint.
     pub(super) fn lane(&self, numbers: &[f64]) -> Lane {
-        std::array::from_fn(|lane| if lane < self.joints { numbers[self.first + lane] } else { 1.0 })
+        let numbers = &numbers[self.first..self.first + self.joints];
+        std::array::from_fn(|lane| numbers.get(lane).copied().unwrap_or(1.0))
     }
 
-    /// The unit quaternion of a frame.
-    pub(super) fn sample(&self, frame: usize, lane: usize) -> [f64; 4] {
-        unit(self.clip.at(frame, self.first + lane).map(T::to_f64))
-    }
-
-    /// The confidence of a frame.
-    pub(super) fn trust(&self, frame: usize, lane: usize) -> f64 {
-        self.confidence.map_or(1.0, |c| c[frame * self.clip.joints() + self.first + lane].to_f64())
+    /// Reads the quaternions of a frame, of any length, and their confidences; lanes without a joint stay as they are.
+    pub(super) fn load(&self, frame: usize, q: &mut [Lane; 4], trust: &mut Lane) {
+        let at = frame * self.clip.joints() + self.first;
+        let (samples, _) = self.clip.data().as_chunks::<4>();
+        for (lane, sample) in samples[at..at + self.joints].iter().enumerate() {
+            for c in 0..4 {
+                q[c][lane] = sample[c].to_f64();
+            }
+        }
+        if let Some(confidence) = self.confidence {
+            for (trust, confidence) in trust.iter_mut().zip(&confidence[at..at + self.joints]) {
+                *trust = confidence.to_f64();
+            }
+        }
     }
 
     /// The first frame with confidence.
     pub(super) fn begin(&self, lane: usize) -> Option<usize> {
-        (0..self.clip.frames()).find(|&frame| self.trust(frame, lane) > 0.0)
+        let Some(confidence) = self.confidence else { return Some(0) };
+        let mut path = confidence.iter().skip(self.first + lane).step_by(self.clip.joints());
+        path.position(|&confidence| confidence > T::ZERO)
     }
 
     /// The rows of the result, `(frames, joints of the group, 4)`, continuous in sign from the hemisphere of the clip's
     /// first frame. Before the first frame with confidence the rotation is the one there; without any it is the sample.
-    pub(super) fn rows(&self, rotation: impl Fn(usize, usize) -> [f64; 4]) -> Vec<T> {
+    pub(super) fn rows<'b>(&self, rotation: impl Fn(usize) -> &'b [Lane; 4]) -> Vec<T> {
         let frames = self.clip.frames();
         let begin: Vec<Option<usize>> = (0..self.joints).map(|lane| self.begin(lane)).collect();
-        let mut before: Vec<[f64; 4]> = (0..self.joints).map(|lane| self.sample(0, lane)).collect();
-        let mut rows = Vec::with_capacity(frames * self.joints * 4);
-        for frame in 0..frames {
-            for (lane, (begin, before)) in begin.iter().zip(&mut before).enumerate() {
-                let q = match begin {
-                    Some(begin) => unit(rotation(frame.max(*begin), lane)),
-                    None => self.sample(frame, lane),
-                };
-                *before = if dot(q, *before) < 0.0 { negative(q) } else { q };
-                rows.extend(before.map(T::from_f64));
+        let late = begin.iter().map(|begin| begin.unwrap_or(frames)).max().unwrap_or(0);
+        let mut before = [[1.0; LANES]; 4];
+        self.load(0, &mut before, &mut [0.0; LANES]);
+        let mut rows = vec![T::ZERO; frames * self.joints * 4];
+        for (frame, row) in rows.chunks_exact_mut(self.joints * 4).enumerate() {
+            let mut planes = *rotation(frame);
+            if frame < late {
+                let mut samples = planes;
+                self.load(frame, &mut samples, &mut [0.0; LANES]);
+                for (lane, begin) in begin.iter().enumerate() {
+                    let there = begin.map(|begin| rotation(frame.max(begin)));
+                    set_lane(&mut planes, lane, of_lane(there.unwrap_or(&samples), lane));
+                }
+            }
+            follow(&mut planes, &mut before);
+            for (lane, q) in row.chunks_exact_mut(4).enumerate() {
+                for c in 0..4 {
+                    q[c] = T::from_f64(planes[c][lane]);
+                }
             }
         }
         rows
     }
 }
 
+multiversion! {
+    /// Makes quaternions of length 1, with the sign that is nearer to those before; they are the next ones' before.
+    fn follow(q: &mut [Lane; 4], before: &mut [Lane; 4]) {
+        let (mut now, last) = (*q, *before);
+        for i in 0..LANES {
+            let one = unit(of_lane(&now, i));
+            let sign = if dot(one, of_lane(&last, i)) < 0.0 { -1.0 } else { 1.0 };
+            set_lane(&mut now, i, [one[0] * sign, one[1] * sign, one[2] * sign, one[3] * sign]);
+        }
+        *q = now;
+        *before = now;
+    }
+}
+
+/// Numbers of joints as lanes, 1 where there is no joint.
+pub(super) fn lanes(numbers: &[f64]) -> Vec<Lane> {
+    let lane = |numbers: &[f64]| std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(1.0));
+    numbers.chunks(LANES).map(lane).collect()
+}
+
 /// Filters a clip group by group: `filter` goes through the frames of a group and gives its [`Group::rows`], and what else
-/// it knows; for the first group that comes back.
+/// it knows; for the first group that comes back. Its buffers go from group to group: fresh pages cost as much as the
+/// arithmetic.
 ///
 /// # Errors
 /// The first error of the groups.
-pub(super) fn run<T: Real, R: Send>(
+pub(super) fn run<T: Real, B: Default + Send, R: Send>(
     clip: ClipView<'_, T>,
     confidence: Option<&[T]>,
     out: &mut [T],
     nanoseconds: usize,
-    filter: impl Fn(&Group<'_, T>) -> Result<(Vec<T>, R), Error> + Sync + Send,
+    filter: impl Fn(&Group<'_, T>, &mut B) -> Result<(Vec<T>, R), Error> + Sync + Send,
 ) -> Result<Option<R>, Error> {
     let joints = clip.joints();
     let firsts: Vec<usize> = (0..joints).step_by(LANES).collect();
+    let spare: Mutex<Vec<B>> = Mutex::default();
     let filtered = parallel::map(firsts, nanoseconds, |_, first| {
-        filter(&Group { clip, confidence, first, joints: LANES.min(joints - first) })
+        let kept = spare.lock().map_or(None, |mut spare| spare.pop());
+        let mut buffers = kept.unwrap_or_default();
+        let group = Group { clip, confidence, first, joints: LANES.min(joints - first) };
+        let result = filter(&group, &mut buffers)?;
+        if let Ok(mut spare) = spare.lock() {
+            spare.push(buffers);
+        }
+        Ok(result)
     })?;
     let (rows, more): (Vec<Vec<T>>, Vec<R>) = filtered.into_iter().unzip();
     let tiles: Vec<&mut [T]> = out.chunks_mut(TILE * joints * 4).collect();

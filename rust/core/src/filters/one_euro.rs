@@ -13,7 +13,7 @@
 use super::lanes::{self, Group, LANES, Lane, of_lane, scaled, select, set_lane};
 use crate::error::check_length;
 use crate::parallel::Interrupt;
-use crate::rotations::quaternion::{self, between, exp_one, log_short, product};
+use crate::rotations::quaternion::{self, between, exp_one, log_short, product, unit};
 use crate::simd::multiversion;
 use crate::{ClipMut, ClipView, Error, Real};
 
@@ -75,10 +75,11 @@ impl OneEuro {
             }
             return quaternion::normalize(clip.data(), out);
         }
-        let filter = |group: &Group<'_, T>| self.run(group, frames, interrupt);
+        let filter =
+            |group: &Group<'_, T>, records: &mut Vec<Record>| self.run(group, records, frames, interrupt);
         let root = lanes::run(clip, confidence, out, frames * joints * NANOSECONDS, filter)?;
-        if let (Some(Translation { values, out }), Some((begin, shares))) = (translation, root) {
-            follow(begin, &shares, values, out);
+        if let (Some(Translation { values, out }), Some(root)) = (translation, root) {
+            follow(&root, values, out);
         }
         Ok(())
     }
@@ -87,15 +88,14 @@ impl OneEuro {
     fn run<T: Real>(
         &self,
         group: &Group<'_, T>,
+        records: &mut Vec<Record>,
         frames: usize,
         interrupt: &Interrupt,
-    ) -> Result<(Vec<T>, (Option<usize>, Vec<f64>)), Error> {
-        let mut records = vec![Record::STILL; frames];
+    ) -> Result<(Vec<T>, Shares), Error> {
+        records.clear();
+        records.resize(frames, Record::STILL);
         for (frame, record) in records.iter_mut().enumerate() {
-            for lane in 0..group.joints {
-                set_lane(&mut record.rotation, lane, group.sample(frame, lane));
-                record.trust[lane] = group.trust(frame, lane);
-            }
+            group.load(frame, &mut record.rotation, &mut record.trust);
         }
         let cutoffs = Cutoffs {
             least: group.lane(&self.min_cutoff),
@@ -107,19 +107,27 @@ impl OneEuro {
             interrupt.check()?;
             forward(stretch, &cutoffs, &mut state);
         }
-        let rows = group.rows(|frame, lane| of_lane(&records[frame].rotation, lane));
-        Ok((rows, (group.begin(0), records.iter().map(|record| record.share[0]).collect())))
+        let rows = group.rows(|frame| &records[frame].rotation);
+        let shares = records.iter().map(|record| record.share[0]).collect();
+        Ok((rows, Shares { begin: group.begin(0), shares }))
     }
 }
 
-/// Moves positions by shares of the way to each sample, from the frame `begin` on.
-fn follow<T: Real>(begin: Option<usize>, shares: &[f64], values: &[T], out: &mut [T]) {
-    let Some(begin) = begin else {
+/// By which part of the way to each sample a joint moved.
+struct Shares {
+    /// The frame of its first sample.
+    begin: Option<usize>,
+    shares: Vec<f64>,
+}
+
+/// Moves positions by the shares of a joint.
+fn follow<T: Real>(root: &Shares, values: &[T], out: &mut [T]) {
+    let Some(begin) = root.begin else {
         out.copy_from_slice(values);
         return;
     };
     let mut position: [f64; 3] = std::array::from_fn(|c| values[begin * 3 + c].to_f64());
-    for (frame, (share, out)) in shares.iter().zip(out.chunks_exact_mut(3)).enumerate() {
+    for (frame, (share, out)) in root.shares.iter().zip(out.chunks_exact_mut(3)).enumerate() {
         for (c, out) in out.iter_mut().enumerate() {
             if frame > begin {
                 position[c] += share * (values[frame * 3 + c].to_f64() - position[c]);
@@ -131,26 +139,26 @@ fn follow<T: Real>(begin: Option<usize>, shares: &[f64], values: &[T], out: &mut
 
 /// The cutoffs of [`LANES`] joints.
 #[derive(Debug, Clone, Copy)]
-struct Cutoffs {
-    least: Lane,
-    beta: Lane,
-    derivative: Lane,
+pub(super) struct Cutoffs {
+    pub(super) least: Lane,
+    pub(super) beta: Lane,
+    pub(super) derivative: Lane,
 }
 
 /// One frame of [`LANES`] joints.
 #[derive(Debug, Clone, Copy)]
-struct Record {
-    /// The sample, and then the result.
-    rotation: [Lane; 4],
+pub(super) struct Record {
+    /// The sample, of any length, and then the result.
+    pub(super) rotation: [Lane; 4],
     /// Confidence of the sample.
-    trust: Lane,
+    pub(super) trust: Lane,
     /// By which part of the way to the sample the result moved.
     share: Lane,
 }
 
 impl Record {
     /// A sample of each joint that stands still at the identity, with confidence.
-    const STILL: Self = Self {
+    pub(super) const STILL: Self = Self {
         rotation: [[1.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]],
         trust: [1.0; LANES],
         share: [0.0; LANES],
@@ -159,7 +167,7 @@ impl Record {
 
 /// What the filter knows of [`LANES`] joints.
 #[derive(Debug, Clone, Copy)]
-struct State {
+pub(super) struct State {
     /// The last sample.
     sample: [Lane; 4],
     result: [Lane; 4],
@@ -171,7 +179,7 @@ struct State {
 
 impl State {
     /// Before the first sample.
-    fn nothing() -> Self {
+    pub(super) fn nothing() -> Self {
         let still = Record::STILL.rotation;
         Self { sample: still, result: still, velocity: [[0.0; LANES]; 3], elapsed: [0.0; LANES] }
     }
@@ -179,12 +187,12 @@ impl State {
 
 multiversion! {
     /// Makes results of samples.
-    fn forward(records: &mut [Record], cutoffs: &Cutoffs, state: &mut State) {
+    pub(super) fn forward(records: &mut [Record], cutoffs: &Cutoffs, state: &mut State) {
         let mut now = *state;
         for record in records {
             let mut after = *record;
             for i in 0..LANES {
-                let (sample, trust) = (of_lane(&after.rotation, i), after.trust[i]);
+                let (sample, trust) = (unit(of_lane(&after.rotation, i)), after.trust[i]);
                 let (before, velocity) = (of_lane(&now.result, i), of_lane(&now.velocity, i));
                 let measured = trust > 0.0;
                 let begun = now.elapsed[i] > 0.0;
@@ -200,7 +208,8 @@ multiversion! {
                 let speed = (velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2]).sqrt();
                 let share = trust * low_pass(cutoffs.least[i] + cutoffs.beta[i] * speed, elapsed);
                 let moved = product(before, exp_one(scaled(log_short(between(before, sample)), share)));
-                let result = select(begun | !measured, select(measured, moved, before), sample);
+                // A joint that has not begun is where its sample is.
+                let result = select(begun, select(measured, moved, before), sample);
                 set_lane(&mut after.rotation, i, result);
                 after.share[i] = share;
                 set_lane(&mut now.sample, i, select(measured, sample, last));

@@ -34,7 +34,7 @@ class Covariance(NamedTuple):
         )
 
     def gains(self, variance: Reals, trust: Reals) -> tuple[Reals, Reals]:
-        """What a measurement of the pose of variance `variance / trust` changes: shares of the innovation."""
+        """Return by which shares of the innovation a measurement of the pose of variance `variance / trust` corrects both."""
         total = trust * self.pose + variance
         return trust * self.pose / total, trust * self.cross / total
 
@@ -49,7 +49,7 @@ class Covariance(NamedTuple):
         )
 
     def smoother_gains(self, q: Reals) -> tuple[Reals, Reals, Reals, Reals]:
-        """The matrix `C = P Fᵀ (F P Fᵀ + Q)⁻¹` row by row: what one frame learns from the next."""
+        """Return the matrix `C = P Fᵀ (F P Fᵀ + Q)⁻¹` row by row: what one frame learns from the next."""
         after = self.predicted(q).determinant
         return (
             (self.determinant + q * (self.pose + self.cross / 2)) / after,

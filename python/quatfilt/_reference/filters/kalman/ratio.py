@@ -10,6 +10,7 @@ import numpy as np
 from quatfilt._reference._arrays import Indices, Reals
 from quatfilt._reference.filters.kalman import rotations, vectors
 from quatfilt._reference.filters.kalman.covariance import Covariance
+from quatfilt._reference.filters.ways import way_between
 from quatfilt._reference.rotations.quaternion import normalize
 
 STEP = 0.5
@@ -89,18 +90,18 @@ def kalman_vectors_ratio(x: Reals, block: int, lookahead: int) -> Reals:
 
 
 def added(a: Scores, b: Scores) -> Scores:
-    """The scores of two blocks together."""
+    """Return the scores of two blocks together."""
     return Scores(*(x + y for x, y in zip(a, b, strict=True)))
 
 
 def rotation_scores(samples: Reals, trust: Reals, process_variance: Reals, variance: Reals) -> Scores:
-    """What the filter does to a block of rotations, `(frames, joints, 4)`."""
+    """Judge what the filter does to a block of rotations, `(frames, joints, 4)`."""
     states, innovations = zip(*rotations.forward(samples, trust, process_variance, variance), strict=True)
     smooth = rotations.smoothed(list(states), trust, process_variance, len(samples) - 1, 0)[::-1]
-    residuals = np.array([rotations.way_between(*pair) for pair in zip(samples, smooth, strict=True)])
+    residuals = np.array([way_between(*pair) for pair in zip(samples, smooth, strict=True)])
     own = trust * smoothed_variances([state.covariance for state in states], process_variance) / variance
     # How many samples there were before.
-    before = np.cumsum(trust > 0, axis=0) - (trust > 0)
+    before: Indices = np.cumsum(trust > 0, axis=0) - (trust > 0)
     judging = np.where(before >= KNOWN, trust, 0)
     return Scores(
         np.sum(judging * np.sum(np.square(innovations), axis=-1), axis=0),
@@ -111,7 +112,7 @@ def rotation_scores(samples: Reals, trust: Reals, process_variance: Reals, varia
 
 
 def vector_scores(x: Reals, ratio: Reals) -> Scores:
-    """What the filter does to a block of numbers, `(frames, columns)`."""
+    """Judge what the filter does to a block of numbers, `(frames, columns)`."""
     states, innovations = zip(*vectors.forward(x, ratio), strict=True)
     residuals = x - vectors.smoothed(list(states), ratio, len(x) - 1, 0)[::-1]
     return Scores(
@@ -133,7 +134,7 @@ def smoothed_variances(covariances: list[Covariance], process_variance: Reals) -
 
 
 def chosen(scores: Scores, measured: Indices, lookahead: int) -> Reals:
-    """The best ratio of each joint, of which `measured` samples have confidence."""
+    """Return the best ratio of each joint, of which `measured` samples have confidence."""
     result = np.ones(len(measured))
     errors, weights, residuals, shares = (x.reshape(len(CANDIDATES), -1) for x in scores)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -149,7 +150,7 @@ def chosen(scores: Scores, measured: Indices, lookahead: int) -> Reals:
 
 
 def descended(criterion: Reals, start: int) -> int:
-    """The minimum to which steps to the better neighbour lead."""
+    """Return the minimum to which steps to the better neighbour lead."""
     best = start
     while True:
         near = [i for i in (best - 1, best + 1) if 0 <= i < len(criterion) and criterion[i] < criterion[best]]

@@ -5,15 +5,15 @@ R. E. Kalman, *A New Approach to Linear Filtering and Prediction Problems*, 1960
 become logarithms, and velocities are carried along by parallel transport.
 """
 
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 
 from quatfilt._reference._arrays import Mask, Reals
 from quatfilt._reference.filters.kalman.covariance import Covariance
 from quatfilt._reference.filters.nonlocal_pose_means import in_hemisphere_of
-from quatfilt._reference.motion.skeleton import rotate
-from quatfilt._reference.rotations.quaternion import between, exp, log_short, multiply, normalize
+from quatfilt._reference.filters.ways import carried, moved, way_between
+from quatfilt._reference.rotations.quaternion import normalize
 
 FARTHEST_FORECAST = 0.2
 """Radians: deviation of a forecast beyond which it is not followed. The pose may then be anywhere, and a forecast that
@@ -21,8 +21,6 @@ goes on turning would be met from the wrong side by the next sample."""
 
 FASTEST = np.pi
 """Radians per frame: deviation of the velocity before anything is known of it. Faster turns cannot be seen."""
-
-_T = TypeVar("_T", bound=tuple[Reals, ...])
 
 
 class State(NamedTuple):
@@ -118,7 +116,7 @@ def forward(
 
 
 def unknown(sample: Reals, trust: Reals, variance: Reals) -> State:
-    """What is known after one sample: the pose, and nothing of the velocity."""
+    """Return what is known after one sample: the pose, and nothing of the velocity."""
     pose = variance / trust
     velocity = np.full_like(pose, FASTEST**2)
     return State(
@@ -130,7 +128,7 @@ def unknown(sample: Reals, trust: Reals, variance: Reals) -> State:
 
 
 def predict(state: State, process_variance: Reals) -> tuple[Prediction, Covariance]:
-    """What is expected of the next frame."""
+    """Return what is expected of the next frame."""
     covariance = state.covariance.predicted(process_variance)
     left = covariance.pose > FARTHEST_FORECAST**2
     origin = np.where(left[:, None], state.rotation, moved(state.rotation, state.velocity))
@@ -141,7 +139,7 @@ def predict(state: State, process_variance: Reals) -> tuple[Prediction, Covarian
 def step(
     state: State, sample: Reals, trust: Reals, process_variance: Reals, variance: Reals
 ) -> tuple[State, Reals]:
-    """The state one frame later, and the innovation: from the expected pose to the sample."""
+    """Return the state one frame later, and the innovation: from the expected pose to the sample."""
     (origin, way, left), covariance = predict(state, process_variance)
     innovation = way_between(origin, sample) - way
     gain, velocity_gain = (x[:, None] for x in covariance.gains(variance, trust))
@@ -191,26 +189,8 @@ def smoothed(
     return result
 
 
-def moved(rotation: Reals, way: Reals) -> Reals:
-    """The rotation at the end of a way, a rotation vector in the frame of its start."""
-    return multiply(rotation, exp(way / 2))
-
-
-def way_between(start: Reals, end: Reals) -> Reals:
-    """The shorter way from one rotation to another, a rotation vector in the frame of its start."""
-    return 2 * log_short(between(start, end))
-
-
-def carried(vector: Reals, way: Reals) -> Reals:
-    """A vector of the tangent space carried along a way by parallel transport, in the frame of the way's end.
-
-    Of the turn of the frame along a geodesic, parallel transport makes up for one half.
-    """
-    return rotate(exp(-way / 4), vector)
-
-
 def either(condition: Mask, yes: State, no: State) -> State:
-    """The one state or the other, for each joint."""
+    """Choose the one state or the other, for each joint."""
 
     def chosen(a: Reals, b: Reals) -> Reals:
         return np.where(condition.reshape(-1, *[1] * (a.ndim - 1)), a, b)

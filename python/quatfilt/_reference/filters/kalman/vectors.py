@@ -51,7 +51,7 @@ def forward(x: Reals, ratio: Reals) -> list[tuple[State, Reals]]:
     """Filter forward: the states, and the innovations that led to them, in units where a measurement's variance is 1."""
     one, nothing = np.ones(x.shape[1]), np.zeros(x.shape[1])
     first = Covariance(one, nothing, UNKNOWN_VELOCITY * one, UNKNOWN_VELOCITY * one)
-    result = [(State(x[0], nothing, first), nothing)]
+    result: list[tuple[State, Reals]] = [(State(x[0], nothing, first), nothing)]
     for sample in x[1:]:
         state = result[-1][0]
         covariance = state.covariance.predicted(ratio)

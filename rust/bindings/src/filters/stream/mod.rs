@@ -4,7 +4,9 @@
 //! longer than that, and would let another thread push in between.
 
 pub(crate) mod bilateral;
+pub(crate) mod kalman;
 pub(crate) mod nonlocal_pose_means;
+pub(crate) mod one_euro;
 
 use crate::array::{BUG, elements, input, output, to_python};
 use numpy::PyArrayMethods;

@@ -12,7 +12,7 @@
 
 /// Covariance of the errors of pose and velocity.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Covariance {
+pub(in crate::filters) struct Covariance {
     pub(super) pose: f64,
     pub(super) cross: f64,
     pub(super) velocity: f64,

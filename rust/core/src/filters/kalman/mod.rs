@@ -14,13 +14,13 @@
 
 mod covariance;
 mod ratio;
-mod rotations;
+pub(super) mod rotations;
 mod vectors;
 
 pub use ratio::{process_noise, vectors_ratio};
 pub use vectors::filter_vectors;
 
-use super::lanes::{self, Group, of_lane, set_lane};
+use super::lanes::{self, Group};
 use crate::error::check_length;
 use crate::parallel::Interrupt;
 use crate::rotations::quaternion;
@@ -72,20 +72,18 @@ impl Kalman {
         let reach = self.reach(frames);
         let steps = 2 + reach.min(frames - reach);
         let nanoseconds = (frames * joints * NANOSECONDS).saturating_mul(steps);
-        let filter = |group: &Group<'_, T>| {
-            let mut records = vec![Record::STILL; frames];
+        let filter = |group: &Group<'_, T>, records: &mut Vec<Record>| {
+            records.clear();
+            records.resize(frames, Record::STILL);
             for (frame, record) in records.iter_mut().enumerate() {
-                for lane in 0..group.joints {
-                    set_lane(&mut record.rotation, lane, group.sample(frame, lane));
-                    record.trust[lane] = group.trust(frame, lane);
-                }
+                group.load(frame, &mut record.rotation, &mut record.trust);
             }
             let variances = Variances {
                 process: group.lane(&self.process_noise).map(|noise| noise * noise),
                 measurement: group.lane(&self.measurement_noise).map(|noise| noise * noise),
             };
-            self.run(&mut records, &variances, interrupt)?;
-            Ok((group.rows(|frame, lane| of_lane(&records[frame].rotation, lane)), ()))
+            self.run(records, &variances, interrupt)?;
+            Ok((group.rows(|frame| &records[frame].rotation), ()))
         };
         lanes::run(clip, confidence, out, nanoseconds, filter).map(|_| ())
     }
@@ -102,13 +100,13 @@ impl Kalman {
         for last in reach..frames - 1 {
             interrupt.check()?;
             let mut later = Later::nothing(&records[last]);
-            rotations::backward(&mut records[last - reach..last], &variances.process, &mut later, false);
+            rotations::backward(&mut records[last - reach..last], variances, &mut later, false);
             records[last - reach].rotation = later.rotation;
         }
         let mut later = Later::nothing(&records[frames - 1]);
         for stretch in records[frames - 1 - reach..frames - 1].rchunks_mut(STRETCH) {
             interrupt.check()?;
-            rotations::backward(stretch, &variances.process, &mut later, true);
+            rotations::backward(stretch, variances, &mut later, true);
         }
         Ok(())
     }

@@ -6,9 +6,10 @@ use super::forward;
 use super::rotations::{self, Later, Record, Variances, square, way_between};
 use super::vectors;
 use crate::error::check_length;
-use crate::filters::lanes::{LANES, Lane};
+use crate::filters::lanes::{LANES, Lane, of_lane, select, set_lane};
 use crate::parallel::{self, Interrupt};
 use crate::rotations::quaternion::unit;
+use crate::simd::multiversion;
 use crate::{ClipView, Error, Real};
 
 /// Decades between the candidates.
@@ -171,22 +172,10 @@ fn judge(
     };
     let forecasts = forward(records, &variances, interrupt)?;
     let last = records.len() - 1;
-    let mut smooth: [[f64; 3]; LANES] = std::array::from_fn(|i| {
-        let covariance = records[last].covariance(i);
-        [covariance.pose, covariance.cross, covariance.velocity]
-    });
     let mut later = Later::nothing(&records[last]);
-    rotations::backward(&mut records[..last], &variances.process, &mut later, true);
+    rotations::backward(&mut records[..last], &variances, &mut later, true);
     let (mut residuals, mut shares): (Lane, Lane) = ([0.0; LANES], [0.0; LANES]);
-    for (frame, ((sample, trust), record)) in samples.iter().zip(&*records).enumerate().rev() {
-        for i in 0..LANES {
-            if frame < last {
-                smooth[i] = record.covariance(i).smoothed(smooth[i], variances.process[i]);
-            }
-            residuals[i] += trust * square(way_between(*sample, record.rotation(i)));
-            shares[i] += trust * smooth[i][0] / variance;
-        }
-    }
+    compare(samples, records, &variances, &mut residuals, &mut shares);
     for i in 0..LANES {
         scores.errors[first + i] += forecasts.errors[i];
         scores.weights[first + i] += forecasts.weights[i];
@@ -194,6 +183,30 @@ fn judge(
         scores.shares[first + i] += shares[i];
     }
     Ok(())
+}
+
+multiversion! {
+    /// Adds up the squared ways from the smoothed rotations to the samples, each times its confidence, and the shares that
+    /// the samples have in them.
+    fn compare(
+        samples: &[([f64; 4], f64)], records: &[Record], variances: &Variances,
+        residuals: &mut Lane, shares: &mut Lane,
+    ) {
+        let (mut distances, mut own) = ([0.0; LANES], [0.0; LANES]);
+        let mut smooth = [[0.0; LANES]; 3];
+        for (index, ((sample, trust), record)) in samples.iter().zip(records).rev().enumerate() {
+            for i in 0..LANES {
+                let known = record.covariance(i);
+                let after = known.smoothed(of_lane(&smooth, i), variances.process[i]);
+                let better = select(index == 0, [known.pose, known.cross, known.velocity], after);
+                set_lane(&mut smooth, i, better);
+                distances[i] += trust * square(way_between(*sample, record.rotation(i)));
+                own[i] += trust * better[0] / variances.measurement[i];
+            }
+        }
+        *residuals = distances;
+        *shares = own;
+    }
 }
 
 /// Chooses the ratios of [`super::filter_vectors`] for the `columns` of `values`, `(frames, columns)`, as [`process_noise`]

@@ -5,7 +5,7 @@
 
 use super::covariance::Covariance;
 use crate::filters::lanes::{LANES, Lane, of_lane, scaled, select, set_lane};
-use crate::rotations::quaternion::{between, conjugate_one, exp_one, log_short, product, rotate};
+use crate::rotations::quaternion::{between, conjugate_one, exp_one, log_short, product, rotate, unit};
 use crate::simd::multiversion;
 
 /// Radians: deviation of a forecast beyond which it is not followed. The pose may then be anywhere, and a forecast that
@@ -20,18 +20,18 @@ const KNOWN: f64 = 2.0;
 
 /// Variances of each joint: of the acceleration within a frame, and of a measurement.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Variances {
-    pub(super) process: Lane,
-    pub(super) measurement: Lane,
+pub(in crate::filters) struct Variances {
+    pub(in crate::filters) process: Lane,
+    pub(in crate::filters) measurement: Lane,
 }
 
 /// One frame of [`LANES`] joints.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Record {
-    /// The sample; later the pose, or where the forecast was left; in the end the smoothed pose.
-    pub(super) rotation: [Lane; 4],
+pub(in crate::filters) struct Record {
+    /// The sample, of any length; later the pose, or where the forecast was left; in the end the smoothed pose.
+    pub(in crate::filters) rotation: [Lane; 4],
     /// Confidence of the sample.
-    pub(super) trust: Lane,
+    pub(in crate::filters) trust: Lane,
     /// Radians per frame, in the frame of the joint.
     velocity: [Lane; 3],
     /// For how many frames the velocity has gone on since the forecast was left.
@@ -41,7 +41,7 @@ pub(super) struct Record {
 
 impl Record {
     /// A sample of each joint that stands still at the identity, with confidence.
-    pub(super) const STILL: Self = Self {
+    pub(in crate::filters) const STILL: Self = Self {
         rotation: [[1.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]],
         trust: [1.0; LANES],
         velocity: [[0.0; LANES]; 3],
@@ -50,17 +50,17 @@ impl Record {
     };
 
     /// The same sample in all lanes.
-    pub(super) fn alike(sample: [f64; 4], trust: f64) -> Self {
+    pub(in crate::filters) fn alike(sample: [f64; 4], trust: f64) -> Self {
         Self { rotation: sample.map(|x| [x; LANES]), trust: [trust; LANES], ..Self::STILL }
     }
 
     #[inline(always)]
-    pub(super) fn rotation(&self, lane: usize) -> [f64; 4] {
+    pub(in crate::filters) fn rotation(&self, lane: usize) -> [f64; 4] {
         of_lane(&self.rotation, lane)
     }
 
     #[inline(always)]
-    pub(super) fn covariance(&self, lane: usize) -> Covariance {
+    pub(in crate::filters) fn covariance(&self, lane: usize) -> Covariance {
         Covariance::of_array(of_lane(&self.covariance, lane))
     }
 
@@ -212,8 +212,8 @@ impl Better {
 
 /// What is known better of [`LANES`] joints at a frame by what came later.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Later {
-    pub(super) rotation: [Lane; 4],
+pub(in crate::filters) struct Later {
+    pub(in crate::filters) rotation: [Lane; 4],
     way: [Lane; 3],
     half: [Lane; 4],
     velocity: [Lane; 3],
@@ -223,7 +223,7 @@ pub(super) struct Later {
 
 impl Later {
     /// Nothing came later than the frame of this record.
-    pub(super) fn nothing(record: &Record) -> Self {
+    pub(in crate::filters) fn nothing(record: &Record) -> Self {
         Self {
             rotation: record.rotation,
             way: std::array::from_fn(|c| std::array::from_fn(|i| record.velocity[c][i] * record.beyond[i])),
@@ -257,40 +257,41 @@ impl Later {
 
 /// How the forecasts of the filter fared, for each joint.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Forecasts {
+pub(in crate::filters) struct Forecasts {
     /// How many samples had confidence.
-    pub(super) measured: Lane,
+    pub(in crate::filters) measured: Lane,
     /// Squares of the innovations, each times its confidence.
-    pub(super) errors: Lane,
+    pub(in crate::filters) errors: Lane,
     /// Sum of these confidences.
-    pub(super) weights: Lane,
+    pub(in crate::filters) weights: Lane,
 }
 
 /// Starts the filter with the first of the records, which holds a sample.
-pub(super) fn begin(record: &mut Record, variances: &Variances, forecasts: &mut Forecasts) {
+pub(in crate::filters) fn begin(record: &mut Record, variances: &Variances, forecasts: &mut Forecasts) {
     for i in 0..LANES {
         let measured = record.trust[i] > 0.0;
         let trust = if measured { record.trust[i] } else { 1.0 };
-        record.set_state(i, State::first(record.rotation(i), trust, variances.measurement[i]));
+        record.set_state(i, State::first(unit(record.rotation(i)), trust, variances.measurement[i]));
         forecasts.measured[i] = if measured { 1.0 } else { 0.0 };
     }
 }
 
 multiversion! {
     /// Filters forward: `records[0]` holds a state, the others samples, which become states.
-    pub(super) fn forward(records: &mut [Record], variances: &Variances, forecasts: &mut Forecasts) {
+    pub(in crate::filters) fn forward(records: &mut [Record], variances: &Variances, forecasts: &mut Forecasts) {
         let Some((first, rest)) = records.split_first_mut() else { return };
         let mut before = *first;
         for record in rest {
             let mut after = *record;
             for i in 0..LANES {
-                let (sample, trust) = (after.rotation(i), after.trust[i]);
+                let (sample, trust) = (unit(after.rotation(i)), after.trust[i]);
                 let (process, variance) = (variances.process[i], variances.measurement[i]);
                 let (state, error) = before.state(i).step(sample, trust, process, variance);
                 let measured = trust > 0.0;
-                let begins = measured & (forecasts.measured[i] == 0.0);
+                // A joint that has not begun is where its sample is.
+                let begun = forecasts.measured[i] > 0.0;
                 let first = State::first(sample, if measured { trust } else { 1.0 }, variance);
-                after.set_state(i, State::select(begins, first, state));
+                after.set_state(i, State::select(begun, state, first));
                 let judging = if forecasts.measured[i] >= KNOWN { trust } else { 0.0 };
                 forecasts.errors[i] += judging * error;
                 forecasts.weights[i] += judging;
@@ -305,12 +306,12 @@ multiversion! {
 multiversion! {
     /// Smooths backward: the records hold states, `later` speaks of the frame after the last of them, and of the first in
     /// the end. With `keep` the rotations become the smoothed ones.
-    pub(super) fn backward(records: &mut [Record], process: &Lane, later: &mut Later, keep: bool) {
+    pub(in crate::filters) fn backward(records: &mut [Record], variances: &Variances, later: &mut Later, keep: bool) {
         let mut now = *later;
         for record in records.iter_mut().rev() {
             let state = *record;
             for i in 0..LANES {
-                now.set_lane(i, now.of_lane(i).back(now.trust[i] > 0.0, &state.state(i), process[i]));
+                now.set_lane(i, now.of_lane(i).back(now.trust[i] > 0.0, &state.state(i), variances.process[i]));
             }
             now.trust = state.trust;
             if keep {
@@ -323,12 +324,12 @@ multiversion! {
 
 /// The shorter way from one rotation to another, a rotation vector in the frame of its start.
 #[inline(always)]
-pub(super) fn way_between(start: [f64; 4], end: [f64; 4]) -> [f64; 3] {
+pub(in crate::filters) fn way_between(start: [f64; 4], end: [f64; 4]) -> [f64; 3] {
     scaled(log_short(between(start, end)), 2.0)
 }
 
 #[inline(always)]
-pub(super) fn square(v: [f64; 3]) -> f64 {
+pub(in crate::filters) fn square(v: [f64; 3]) -> f64 {
     v[0] * v[0] + v[1] * v[1] + v[2] * v[2]
 }
 

@@ -11,7 +11,9 @@
 
 mod bilateral;
 mod ends;
+mod kalman;
 mod nonlocal_pose_means;
+mod one_euro;
 mod pose;
 
 use crate::Error;
@@ -170,7 +172,9 @@ impl PoseStream {
 mod tests {
     use super::*;
     use crate::filters::bilateral::{Bilateral, Kernel};
+    use crate::filters::kalman::Kalman;
     use crate::filters::nonlocal_pose_means::{Chart, Distance, NonlocalPoseMeans, Weights};
+    use crate::filters::one_euro::OneEuro;
     use crate::parallel::Interrupt;
     use crate::rotations::quaternion::exp_one;
     use crate::window::Boundary;
@@ -241,7 +245,23 @@ mod tests {
             bilateral.filter(view, None, ClipMut::new(&mut out, FRAMES, JOINTS)?, &interrupt)?;
             assert!(farthest(&out, &q) > 1e-3);
             assert!(farthest(&pushed(bilateral.stream()?, &q)?, &out) < 1e-12);
+            let kalman = Kalman {
+                process_noise: vec![0.0, 0.01, 1.0],
+                measurement_noise: vec![0.1; JOINTS],
+                lookahead: Some(lookahead),
+            };
+            kalman.filter(view, None, ClipMut::new(&mut out, FRAMES, JOINTS)?, &interrupt)?;
+            assert!(farthest(&out, &q) > 1e-3);
+            assert!(farthest(&pushed(kalman.stream()?, &q)?, &out) < 1e-12);
         }
+        let one_euro = OneEuro {
+            min_cutoff: vec![0.01, 0.1, 1.0],
+            beta: vec![0.1; JOINTS],
+            derivative_cutoff: vec![0.01; JOINTS],
+        };
+        one_euro.filter(view, None, None, ClipMut::new(&mut out, FRAMES, JOINTS)?, &interrupt)?;
+        assert!(farthest(&out, &q) > 1e-3);
+        assert!(farthest(&pushed(one_euro.stream()?, &q)?, &out) < 1e-12);
         Ok(())
     }
 }
