@@ -133,7 +133,7 @@ def test_the_smoother_is_the_solution_of_the_normal_equations(backend):
 @pytest.mark.parametrize("seed", range(4))
 def test_the_automatic_noise_is_the_minimum_of_the_cross_validation(backend, seed):
     angle, _ = turning(seed)
-    ratios = 10 ** np.linspace(-6, 1, 141)
+    ratios = 10 ** np.linspace(-5, 0, 51)
     velocity_variance = (np.pi / 0.1) ** 2
     scores = [cross_validation(angle, ratio, velocity_variance) for ratio in ratios]
     noise = backend.kalman_process_noise(about_axis(angle), None, np.array([0.1]), FRAMES, -1)

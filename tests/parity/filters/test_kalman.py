@@ -56,7 +56,7 @@ def test_any_options(seed, frames, joints, dtype, process, measurement, lookahea
 
 
 @pytest.mark.parametrize("dtype", DTYPES)
-@pytest.mark.parametrize("lookahead", [-1, 0, 7, 60])
+@pytest.mark.parametrize("lookahead", [-1, 0, 20])
 def test_long_gaps_and_joints_that_begin_late_or_never(lookahead, dtype):
     rng = np.random.default_rng(1)
     q = noisy(rng, 200, 5).astype(dtype)
@@ -68,10 +68,9 @@ def test_long_gaps_and_joints_that_begin_late_or_never(lookahead, dtype):
     agree(q, lookahead=lookahead, confidence=confidence)
 
 
-@pytest.mark.parametrize("dtype", DTYPES)
-@pytest.mark.parametrize("frames", [4095, 4096, 4097, 8193])
-def test_around_the_ends_of_stretches(frames, dtype):
-    agree(noisy(np.random.default_rng(frames), frames, 2).astype(dtype))
+@pytest.mark.parametrize("frames", [4097, 8193])
+def test_around_the_ends_of_stretches(frames):
+    agree(noisy(np.random.default_rng(frames), frames, 2))
 
 
 @pytest.mark.parametrize("measurement", [1e-12, 1e-6, 1e9])
@@ -152,8 +151,7 @@ def test_missing_samples(q, gaps, max_gap, lookahead):
     same_samples(result, expected, tolerances.filtered(result.dtype))
 
 
-@pytest.mark.parametrize("smooth", [True, False])
-@pytest.mark.parametrize("frames", [300, 5000])
+@pytest.mark.parametrize(("frames", "smooth"), [(300, True), (300, False), (5000, True)])
 def test_automatic_noises(frames, smooth):
     """Of a clip with gaps, the longer of them in blocks; and of its translation."""
     rng = np.random.default_rng(5)
