@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 FILTERS = {
     "bilateral": qf.bilateral,
     "butterworth": lambda q, *more, cutoff=0.1, **options: qf.butterworth(q, *more, cutoff=cutoff, **options),
-    "denoise": qf.denoise,
+    "denoise": lambda q, *more, **options: qf.denoise(q, *more, method="nonlocal_pose_means", **options),
     "despike": qf.despike,
     "gaussian": lambda q, *more, sigma=2.0, **options: qf.gaussian(q, *more, sigma=sigma, **options),
     "kalman": qf.kalman,
