@@ -57,6 +57,7 @@ def test_denoise_writes_beside_the_input_and_cleans(folder, tmp_path):
 def test_denoise_does_what_the_function_does(folder, tmp_path, extension):
     output = tmp_path / "out.npz"
     options = {
+        "method": "nonlocal_pose_means",
         "search_radius": 6,
         "patch_radius": 2,
         "weights": "joint",
@@ -226,23 +227,38 @@ def test_version():
         (["denoise", "noisy.bvh", "-o", "there/is/none.bvh"], "none.bvh: No such directory"),
         (["denoise", "noisy.bvh", "-o", "out.amc"], "out.amc: AMC is read only"),
         (["denoise", "noisy.bvh", "--method", "magic"], "method: expected one of 'auto'"),
-        (["denoise", "noisy.bvh", "--bandwidth", "-1"], "--bandwidth: expected a number above 0, got -1"),
-        (["denoise", "noisy.bvh", "--bandwidth", "nan"], "--bandwidth: expected a number above 0, got nan"),
-        (["denoise", "noisy.bvh", "--bandwidth", "wide"], "bandwidth: expected one of 'auto', got 'wide'"),
         (
-            ["denoise", "noisy.bvh", "--search-radius", "0"],
+            ["denoise", "noisy.bvh", "--method", "nonlocal-pose-means", "--bandwidth", "-1"],
+            "--bandwidth: expected a number above 0, got -1",
+        ),
+        (
+            ["denoise", "noisy.bvh", "--method", "nonlocal-pose-means", "--bandwidth", "nan"],
+            "--bandwidth: expected a number above 0, got nan",
+        ),
+        (
+            ["denoise", "noisy.bvh", "--method", "nonlocal-pose-means", "--bandwidth", "wide"],
+            "bandwidth: expected one of 'auto', got 'wide'",
+        ),
+        (
+            ["denoise", "noisy.bvh", "--method", "nonlocal-pose-means", "--search-radius", "0"],
             "search_radius: expected an integer of at least 1",
         ),
         (
-            ["denoise", "noisy.bvh", "--search-radius", "far"],
+            ["denoise", "noisy.bvh", "--method", "nonlocal-pose-means", "--search-radius", "far"],
             "--search-radius: expected a number of frames or all",
         ),
-        (["denoise", "noisy.bvh", "--patch-radius", "x"], "--patch-radius"),
         (
-            ["denoise", "noisy.bvh", "--patch-radius", "-1"],
+            ["denoise", "noisy.bvh", "--method", "nonlocal-pose-means", "--patch-radius", "x"],
+            "--patch-radius",
+        ),
+        (
+            ["denoise", "noisy.bvh", "--method", "nonlocal-pose-means", "--patch-radius", "-1"],
             "patch_radius: expected an integer of at least 0",
         ),
-        (["denoise", "noisy.bvh", "--chart", "flat"], "chart: expected one of 'mean'"),
+        (
+            ["denoise", "noisy.bvh", "--method", "nonlocal-pose-means", "--chart", "flat"],
+            "chart: expected one of 'mean'",
+        ),
         (["denoise", "noisy.bvh", "--fps", "0"], "fps: expected a number above 0, got 0"),
         (["denoise", "noisy.bvh", "--threads", "0"], "--threads: expected at least 1, got 0"),
         (["denoise", "noisy.bvh", "--first-frame", "burn"], "first_frame: expected one of 'auto'"),
