@@ -8,7 +8,19 @@ import pytest
 import quatfilt as qf
 from quatfilt.evaluation import bilateral_figs, bilateral_figs_page, bilateral_figs_picture
 from quatfilt.evaluation._written import write
-from quatfilt.evaluation.bilateral_figs import FRAMES, MASK, NOISE, PASSES, SIGMAS
+from quatfilt.evaluation.bilateral_figs_conditions import (
+    CLIP,
+    FRAMES,
+    JOINTS,
+    MASK,
+    NOISE,
+    PASSES,
+    SIGMAS,
+    START,
+    with_noise,
+)
+from quatfilt.evaluation.bilateral_figs_results import path, speed
+from quatfilt.evaluation.clips import load
 
 
 @pytest.fixture(scope="module", name="figures")
@@ -38,7 +50,7 @@ def test_curves_are_means_over_the_seeds(figures):
     place = motion.skeleton.index(figures.drawn.joint)
     found = []
     for seed in range(2):
-        noisy = bilateral_figs._noisy(motion.rotations, seed)
+        noisy = with_noise(motion.rotations, seed)
         filtered = qf.bilateral(noisy, sigma_angle=0.4, iterations=4)
         found.append(qf.metrics.mse(motion.rotations[:, place], filtered[:, place]))
     assert figures.curves[0].joint[0.2][3] == pytest.approx(np.mean(found), rel=1e-9)
@@ -66,8 +78,8 @@ def test_paths_are_seen_from_the_root(figures):
     motion = figures.drawn.truth
     moved = motion.replace(translation=motion.translation + np.array([1.0, 2.0, 3.0]))
     hand = figures.drawn.hand
-    assert bilateral_figs.path(moved, hand) == pytest.approx(bilateral_figs.path(motion, hand), abs=1e-9)
-    assert bilateral_figs.speed(motion, figures.drawn.joint).shape == (FRAMES - 1,)
+    assert path(moved, hand) == pytest.approx(path(motion, hand), abs=1e-9)
+    assert speed(motion, figures.drawn.joint).shape == (FRAMES - 1,)
 
 
 def test_the_page_and_the_numbers_agree(figures, tmp_path):
@@ -77,7 +89,7 @@ def test_the_page_and_the_numbers_agree(figures, tmp_path):
         bilateral_figs_page.STEM,
         page=bilateral_figs_page.markdown(figures, run),
         numbers=bilateral_figs_page.as_dict(figures, run),
-        draw=lambda path: bilateral_figs_picture.draw(figures, path),
+        draw=lambda file: bilateral_figs_picture.draw(figures, file),
     )
     assert trouble == ""
     numbers = json.loads(written[0].with_suffix(".json").read_text(encoding="utf-8"))
@@ -93,7 +105,7 @@ def test_the_page_and_the_numbers_agree(figures, tmp_path):
 
 
 def test_the_recording_is_there(data_dir):
-    clip = bilateral_figs.load(data_dir, bilateral_figs.CLIP)[0]
-    joint, hand = bilateral_figs.JOINTS[clip.name]
+    clip = load(data_dir, CLIP)[0]
+    joint, hand = JOINTS[clip.name]
     assert {joint, hand} <= set(clip.motion.skeleton.names)
-    assert len(clip.motion) >= 120 * (bilateral_figs.START[clip.name] + 4 * FRAMES / 120)
+    assert len(clip.motion) >= 120 * (START[clip.name] + 4 * FRAMES / 120)

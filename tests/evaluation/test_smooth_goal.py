@@ -7,7 +7,7 @@ import pytest
 import quatfilt as qf
 from quatfilt.evaluation import clips, smooth_goal, smooth_goal_page
 from quatfilt.evaluation._written import write
-from quatfilt.evaluation.bilateral_figs import CLIP
+from quatfilt.evaluation.bilateral_figs_conditions import CLIP
 from quatfilt.evaluation.methods import CLASSICAL
 from quatfilt.evaluation.noises import Noise, versions
 from quatfilt.evaluation.real_jitter import DEFECTS

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from quatfilt.evaluation._markdown import cell, table
-from quatfilt.evaluation.bilateral_figs import (
+from quatfilt.evaluation.bilateral_figs_conditions import (
     DRAWN,
     FIVE,
     FRAMES,
@@ -13,12 +13,8 @@ from quatfilt.evaluation.bilateral_figs import (
     PAPERS_JOINTS,
     PAPERS_MILLISECONDS,
     PASSES,
-    Comparison,
-    Curves,
-    Figures,
-    best_pass,
-    speed,
 )
+from quatfilt.evaluation.bilateral_figs_results import Comparison, Curves, Figures, best_pass, speed
 
 STEM = "bilateral-figs"
 

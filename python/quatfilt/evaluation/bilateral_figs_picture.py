@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 
 from quatfilt.evaluation._plot import CYCLE, DENOISED, NOISY, TRUTH, figure, quiet
-from quatfilt.evaluation.bilateral_figs import FIVE, PASSES, Drawn, Figures, path, speed
+from quatfilt.evaluation.bilateral_figs_conditions import FIVE, PASSES
+from quatfilt.evaluation.bilateral_figs_results import Drawn, Figures, path, speed
 
 _GAUSSIAN = CYCLE[0]
 

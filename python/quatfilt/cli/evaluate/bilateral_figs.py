@@ -21,6 +21,7 @@ def bilateral_figs(
     # SciPy would slow down every verb.
     from quatfilt.evaluation import bilateral_figs, bilateral_figs_page, bilateral_figs_picture  # noqa: PLC0415
     from quatfilt.evaluation._written import write  # noqa: PLC0415
+    from quatfilt.evaluation.bilateral_figs_conditions import PASSES  # noqa: PLC0415
 
     _validation.integer(seeds, "--seeds", at_least=1)
     with progress("filtering") as done:
@@ -44,7 +45,7 @@ def bilateral_figs(
     curves = figures.curves[0]
     _output.say(f"MSE of {figures.drawn.joint} by passes, 10⁻³ rad² on S³; noisy {1e3 * curves.noisy:.2f}")
     _output.print_table(
-        ("σ_g", *map(str, range(1, bilateral_figs.PASSES + 1))),
+        ("σ_g", *map(str, range(1, PASSES + 1))),
         [
             (_output.number(sigma), *(_output.number(1e3 * value) for value in values))
             for sigma, values in curves.joint.items()

@@ -1,0 +1,42 @@
+"""Every check of what users pass in, and every message.
+
+Arrays leave this package native, C-contiguous, aligned, float32 or float64, and scalar first.
+"""
+
+from quatfilt._validation.arrays import floats, pair, quaternions, scalar_order, vectors
+from quatfilt._validation.choices import choice, known
+from quatfilt._validation.confidences import confidence, pose_confidence
+from quatfilt._validation.frame_times import times, times_within
+from quatfilt._validation.joints import frequencies, per_joint
+from quatfilt._validation.masks import mask
+from quatfilt._validation.numbers import integer, interval, number, odd
+from quatfilt._validation.poses import clip, pose
+from quatfilt._validation.randomness import generator
+from quatfilt._validation.skeletons import offsets, parents, posed
+
+__all__ = [
+    "choice",
+    "clip",
+    "confidence",
+    "floats",
+    "frequencies",
+    "generator",
+    "integer",
+    "interval",
+    "known",
+    "mask",
+    "number",
+    "odd",
+    "offsets",
+    "pair",
+    "parents",
+    "per_joint",
+    "pose",
+    "pose_confidence",
+    "posed",
+    "quaternions",
+    "scalar_order",
+    "times",
+    "times_within",
+    "vectors",
+]

@@ -1,0 +1,97 @@
+//! One joint: its runs of samples, and which of them are spikes.
+
+use super::median::median;
+use super::neighbours::{SURROUNDINGS, Sides};
+use super::place::{Place, SLACK};
+use crate::Error;
+use crate::parallel::Interrupt;
+use std::ops::Range;
+
+/// A spike is farther away than the joint moves in so many frames.
+const MOTION: f64 = 2.0;
+
+/// How often the clip is looked at: for spikes, for those that they hid, and for what only seemed to be one beside them.
+const LOOKS: usize = 3;
+
+/// One joint, and what is a spike there.
+pub(super) struct Joint<P> {
+    pub(super) path: Vec<P>,
+    pub(super) trust: Vec<f64>,
+    pub(super) usual: f64,
+    pub(super) smallest: f64,
+    pub(super) radius: usize,
+    pub(super) threshold: f64,
+}
+
+impl<P: Place> Joint<P> {
+    /// The frames of the spikes.
+    pub(super) fn spikes(&self, interrupt: &Interrupt) -> Result<Vec<usize>, Error> {
+        let mut found = Vec::new();
+        for _ in 0..LOOKS {
+            interrupt.check()?;
+            let seen = self.look(&found);
+            if seen == found {
+                break;
+            }
+            found = seen;
+        }
+        Ok(found)
+    }
+
+    /// The frames of the spikes, given those that were found before; in order.
+    fn look(&self, before: &[usize]) -> Vec<usize> {
+        let mut trusted: Vec<bool> = self.trust.iter().map(|&trust| trust > 0.0).collect();
+        for &frame in before {
+            trusted[frame] = false;
+        }
+        let mut found = Vec::new();
+        let mut sides = Sides::default();
+        let sure = P::nearness_at(self.least(1.0)) * (1.0 - SLACK);
+        for length in 1..self.radius {
+            for start in 0..(self.path.len() + 1).saturating_sub(length) {
+                let run = start..start + length;
+                let doubt = &self.trust[run.clone()];
+                if !doubt.iter().all(|&trust| trust > 0.0) {
+                    continue;
+                }
+                let doubt = doubt.iter().copied().fold(0.0, f64::max);
+                let bound =
+                    if doubt < 1.0 { P::nearness_at(self.least(doubt)) * (1.0 - SLACK) } else { sure };
+                let Some((a, b)) = self.ends(&run, &trusted) else { continue };
+                let (into, out) = (&self.path[start], &self.path[run.end - 1]);
+                if self.path[a].nearness(*into) <= bound || out.nearness(self.path[b]) <= bound {
+                    continue;
+                }
+                if self.is_spike(&run, doubt, &trusted, &mut sides) {
+                    found.extend(run);
+                }
+            }
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    /// The least deviation of a spike, whatever is around it.
+    fn least(&self, doubt: f64) -> f64 {
+        self.smallest.max(self.threshold * doubt * self.usual)
+    }
+
+    fn is_spike(&self, run: &Range<usize>, doubt: f64, trusted: &[bool], sides: &mut Sides) -> bool {
+        let Some(away) = self.deviation(run, trusted, sides) else { return false };
+        if away <= self.least(doubt) || away <= MOTION * self.pace(sides) {
+            return false;
+        }
+        let reach = SURROUNDINGS * self.radius;
+        let length = run.len();
+        let before = run.start.saturating_sub(reach)..(run.start + 1).saturating_sub(length);
+        let last = (run.start + reach + 1).min((self.path.len() + 1).saturating_sub(length));
+        let mut around: Vec<f64> = before
+            .chain(run.end..last)
+            .map(|start| start..start + length)
+            .filter(|run| trusted[run.clone()].iter().all(|&trusted| trusted))
+            .filter_map(|run| self.deviation(&run, trusted, sides))
+            .collect();
+        away > self.threshold * doubt * median(&mut around)
+    }
+}
