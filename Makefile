@@ -49,7 +49,7 @@ $(VENV)/.group-%: pyproject.toml $(VENV)/.pip
 # Python sources are installed in place and need no rebuild.
 $(VENV)/.built: $(RUST_SOURCES) pyproject.toml $(VENV)/.group-build
 	@sh .ci/prerequisites "$(PYTHON)"
-	$(BIN)/maturin develop --release --locked --extras evaluate
+	$(BIN)/maturin develop --release --locked --extras plot,wavelet
 	@touch $@
 
 .PHONY: build  ## Set up the virtual environment and build the package into it

@@ -141,8 +141,12 @@ def test_options_without_a_default():
 
 def test_options_reach_the_filter():
     q = clip()
+    options = {"strength": 0.5, "joints": "apart"}
+    expected = qf.smooth(qf.despike(q), **options)
+    np.testing.assert_array_equal(qf.denoise(q, **options), expected)
     options = {"search_radius": 4, "patch_radius": 2, "bandwidth": 0.1, "chart": "local"}
-    np.testing.assert_array_equal(qf.denoise(q, **options), qf.nonlocal_pose_means(q, **options))
+    expected = qf.nonlocal_pose_means(q, **options)
+    np.testing.assert_array_equal(qf.denoise(q, method="nonlocal_pose_means", **options), expected)
     options = {"radius": 2, "sigma_angle": 0.1, "kernel": "classic", "iterations": 3}
     expected = qf.bilateral(q, **options)
     np.testing.assert_array_equal(qf.denoise(q, method="bilateral", **options), expected)

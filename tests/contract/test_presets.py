@@ -12,6 +12,14 @@ from quatfilt.presets import BEST, PRESETS
 
 every_preset = pytest.mark.parametrize("name", PRESETS)
 
+OTHERS = {
+    "butterworth": {"cutoff": 3.0},
+    "despike": {"threshold": 0.5, "smallest": 0.0},
+    "nonlocal_pose_means": {"boundary": "linear"},
+    "smooth": {"strength": 2.0},
+}
+"""Values that no preset has."""
+
 PAGE = Path(__file__).parents[2] / "docs" / "denoise.md"
 
 
@@ -93,7 +101,7 @@ def test_what_is_given_goes_before_the_preset(name):
     assert np.isfinite(qf.denoise(gappy, preset=name, max_gap=0.5).rotations).all()
     assert np.isnan(qf.denoise(gappy, preset=name, max_gap=0.4).rotations[30:60, 1]).all()
     for step, options in PRESETS[name].steps.items():
-        own = {step: {"boundary": "linear"}}
+        own = {step: OTHERS[step]}
         result = qf.denoise(noisy, preset=name, **own)
         assert not np.array_equal(result.rotations, qf.denoise(noisy, preset=name).rotations)
         assert options == PRESETS[name].steps[step], "the preset was written"

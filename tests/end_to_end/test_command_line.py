@@ -168,7 +168,7 @@ def test_demo(tmp_path):
     report = json.loads(run("demo", "-o", tmp_path / "d", "--seed", 3, "--seconds", 3, "--json").stdout)
     assert report["denoised"]["psnr"] > report["noisy"]["psnr"] + 4
     assert report["denoised"]["foot_slide"] < report["noisy"]["foot_slide"] / 4
-    assert 0.9 < report["denoised"]["peak_kept"] < 1.5 < report["noisy"]["peak_kept"]
+    assert 0.8 < report["denoised"]["peak_kept"] < 1.2 < report["noisy"]["peak_kept"]
     names = ["denoise.png", "denoised.bvh", "noisy.bvh", "truth.bvh"]
     assert sorted(path.name for path in (tmp_path / "d").iterdir()) == names
     assert (tmp_path / "d" / "denoise.png").read_bytes().startswith(b"\x89PNG")
