@@ -8,6 +8,7 @@ import numpy as np
 
 from quatfilt import _validation
 from quatfilt._typing import Array, Mask
+from quatfilt.filters._paths import straightened
 from quatfilt.filters._spans import GAPS
 from quatfilt.methods import AUTO, FILTERS, METHODS, REQUIRED, Method
 from quatfilt.presets import BEST, PRESETS, Preset
@@ -193,24 +194,13 @@ def _filtered(
     if translation is None or anywhere:
         return step.method.with_translation(rotations, None, **settings)[0], translation
     missing: Mask = np.asarray(np.isnan(translation).any(axis=1))
-    path = _straightened(translation, missing)
+    path = None if missing.all() else straightened(translation, ~missing)
     result, moved = step.method.with_translation(rotations, path, **settings)
     if moved is None:
         return result, translation
     if gaps == "keep":
         moved[missing] = np.nan
     return result, moved
-
-
-def _straightened(translation: Array, missing: Mask) -> Array | None:
-    """Return a translation with its gaps filled along straight lines; None where all of it is missing."""
-    if missing.all():
-        return None
-    if not missing.any():
-        return translation
-    frames = np.arange(len(translation))
-    columns = [np.interp(frames, frames[~missing], column[~missing]) for column in translation.T]
-    return np.stack(columns, axis=1).astype(translation.dtype)
 
 
 __all__ = ["OF_THE_CLIP", "SHARED", "Step", "names", "plan", "run"]

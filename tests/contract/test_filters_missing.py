@@ -154,3 +154,13 @@ def test_a_gap_at_one_end_that_stays_does_not_spread(name, end):
     result = FILTERS[name](broken, max_gap=5)
     assert np.isnan(result[gap]).all()
     assert clips.angles(result[rest], q[rest]).max() < 1
+
+
+@pytest.mark.parametrize("name", sorted(FILTERS.keys() - {"denoise", "nonlocal_pose_means"}))
+def test_long_gaps_of_a_joint_do_not_matter_to_others(name):
+    """Of filters that look at one joint at a time."""
+    q = clip()
+    gaps = q.copy()
+    gaps[np.arange(FRAMES) % 20 < 10, 1] = np.nan
+    result, expected = FILTERS[name](gaps, max_gap=5), FILTERS[name](q)
+    np.testing.assert_allclose(result[:, [0, 2]], expected[:, [0, 2]], rtol=0, atol=tolerances.FLOAT64)

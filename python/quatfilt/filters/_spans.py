@@ -1,13 +1,14 @@
 """What becomes of missing samples, the same for every filter.
 
-Gaps up to `max_gap` are filled along geodesics, and what was filled has confidence 0. Longer gaps stay missing: the
-clip is cut where one begins or ends, each span is filtered apart, with the joints that are there.
+Gaps up to `max_gap` are filled along geodesics, and what was filled has confidence 0. Longer gaps stay missing: a joint
+is cut where one begins or ends, and its spans are filtered apart. A filter that looks at whole poses has all joints cut
+where one of them comes or goes.
 
 Filters with weights of their own take the confidences. For others `Clip.trusted` prepares the samples.
 """
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias, cast
 
@@ -27,7 +28,7 @@ GAPS: tuple[Gaps, ...] = ("fill", "keep", "raise")
 
 @dataclass(frozen=True)
 class Span:
-    """Frames of a clip in which the same joints are there."""
+    """Frames of a clip, and joints that are there and are filtered in them."""
 
     frames: slice
     joints: NDArray[np.intp]
@@ -103,8 +104,9 @@ def prepare(
     fps: float,
     confidence: ArrayLike | None,
     scalar_first: bool,
+    together: bool = False,
 ) -> Clip:
-    """Check a clip and its options, and fill its gaps."""
+    """Check a clip and its options, and fill its gaps; `together` is for filters that look at whole poses."""
     array = _validation.quaternions(q, "rotations", scalar_first=scalar_first)
     rotations, count = _validation.clip(array)
     frames, joints = rotations.shape[:2]
@@ -119,15 +121,20 @@ def prepare(
         missing = ~np.isfinite(rotations).all(axis=-1) | (rotations == 0).all(axis=-1)
         rotations, _ = ops().fill_gaps(rotations, longest, "slerp")
         trust = np.where(missing, 0, 1 if trust is None else trust).astype(rotations.dtype)
-        spans = _spans(np.isnan(rotations[..., 0]))
+        spans = tuple(_spans(np.isnan(rotations[..., 0]), together=together))
     return Clip(rotations, trust, confidence is not None, missing, spans, policy, array.shape, scalar_first)
 
 
-def _spans(missing: Mask) -> tuple[Span, ...]:
-    """Cut the clip wherever a joint comes or goes."""
-    changes = 1 + np.flatnonzero((missing[1:] != missing[:-1]).any(axis=1))
-    borders = [0, *changes.tolist(), len(missing)]
-    spans = (
-        Span(slice(start, end), np.flatnonzero(~missing[start])) for start, end in itertools.pairwise(borders)
-    )
-    return tuple(span for span in spans if len(span.joints))
+def _spans(missing: Mask, *, together: bool) -> Iterator[Span]:
+    """Cut a clip wherever a joint comes or goes; joints that have the same gaps stay beside each other."""
+    groups = np.zeros(missing.shape[1], np.intp)
+    if not together:
+        groups = np.unique(missing, axis=1, return_inverse=True)[1].ravel()
+    for group in range(groups.max(initial=-1) + 1):
+        joints = np.flatnonzero(groups == group)
+        gone = missing[:, joints]
+        changes = 1 + np.flatnonzero((gone[1:] != gone[:-1]).any(axis=1))
+        for start, end in itertools.pairwise([0, *changes.tolist(), len(gone)]):
+            there = joints[~gone[start]]
+            if len(there):
+                yield Span(slice(start, end), there)

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from quatfilt import _validation
 from quatfilt._backend import ops
 from quatfilt._typing import Array
-from quatfilt.filters import _spans
+from quatfilt.filters import _paths, _spans
 
 Noise = float | ArrayLike | Literal["auto"]
 
@@ -215,6 +215,8 @@ def with_translation(
     if translation is None:
         return result, None
     moved = translation.astype(clip.rotations.dtype)
+    if clip.confidence is not None and clip.confidence.size:
+        moved = _paths.straightened(moved, np.asarray(clip.confidence[:, 0] > 0))
     sample, block = _sample(moved)
     ratio = ops().kalman_vectors_ratio(sample, block, reach)
     return result, cast("Array", ops().kalman_vectors(moved, ratio, reach))
@@ -241,7 +243,7 @@ def _noises(
         _validation.choice(measurement_noise, "measurement_noise", ("auto",))
         measurement = np.full(joints, _LEAST_NOISE)
         if not clip.unchanged:
-            measurement = np.maximum(ops().noise_level(_measured(clip)).astype(np.float64), _LEAST_NOISE)
+            measurement = np.maximum(ops().noise_level(clip.observed).astype(np.float64), _LEAST_NOISE)
     else:
         measurement = _validation.per_joint(measurement_noise, "measurement_noise", joints, above=0)
     measurement = np.clip(measurement, *EXTREMES)
@@ -258,13 +260,6 @@ def _noises(
         # Gaps that stay have no confidence, and any rotation.
         rotations = np.where(gone[..., None], np.array([1, 0, 0, 0], rotations.dtype), rotations)
     return ops().kalman_process_noise(rotations, trust, measurement, block, reach), measurement
-
-
-def _measured(clip: _spans.Clip) -> Array:
-    """Return the rotations without those that were filled in."""
-    if not clip.missing.any():
-        return clip.rotations
-    return np.where(clip.missing[..., None], np.array(np.nan, clip.rotations.dtype), clip.rotations)
 
 
 def _sample(frames: Array) -> tuple[Array, int]:

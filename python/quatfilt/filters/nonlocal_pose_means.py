@@ -186,7 +186,13 @@ def with_translation(
 ) -> tuple[Array, Array | None]:
     """Filter as `nonlocal_pose_means` does, and a translation ``(frames, 3)`` with the root's weights."""
     clip = _spans.prepare(
-        q, gaps=gaps, max_gap=max_gap, fps=fps, confidence=confidence, scalar_first=scalar_first
+        q,
+        gaps=gaps,
+        max_gap=max_gap,
+        fps=fps,
+        confidence=confidence,
+        scalar_first=scalar_first,
+        together=True,
     )
     options = _checked(bandwidth=bandwidth, **window)
     bandwidths = _joint_bandwidths(clip, bandwidth, window["weights"])
@@ -240,9 +246,10 @@ def _checked(
 def _sample(clip: _spans.Clip) -> Array:
     """Return what the noise is measured on: all frames of a short clip, evenly spaced blocks of a long one.
 
-    A missing frame stands between blocks, for no difference is taken across one.
+    What nobody trusts is left out. A missing frame stands between blocks, for no difference is taken across one.
     """
-    rotations, missing = clip.rotations, clip.missing
+    rotations = clip.rotations
+    missing = clip.missing if clip.confidence is None else np.asarray(clip.confidence == 0)
     if len(rotations) > _BLOCKS * _BLOCK_FRAMES:
         starts = np.linspace(0, len(rotations) - _BLOCK_FRAMES, _BLOCKS).astype(np.intp)
         blocks = (starts[:, None] + np.arange(_BLOCK_FRAMES)).ravel()

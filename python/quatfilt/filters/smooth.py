@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from quatfilt import _validation
 from quatfilt._backend import ops
-from quatfilt._typing import Array, Mask, PerJoint
-from quatfilt.filters import _development, _spans
+from quatfilt._typing import Array, PerJoint
+from quatfilt.filters import _development, _paths, _spans
 
 _STRONGEST = 1e6
 """Far below it already, nothing is left but a constant or a polynomial."""
@@ -119,8 +119,8 @@ def with_translation(
     q: ArrayLike, translation: Array | None, *, strength: PerJoint, joints: Joints, **missing: Any
 ) -> tuple[Array, Array | None]:
     """Smooth as `smooth` does, and a translation ``(frames, 3)`` by its own noise and with the strength of joint 0."""
-    clip = _spans.prepare(q, **missing)
     together = _validation.choice(joints, "joints", _JOINTS) == "together"
+    clip = _spans.prepare(q, together=together, **missing)
     scale = _validation.per_joint(
         strength, "strength", clip.rotations.shape[1], at_least=0, at_most=_STRONGEST
     )
@@ -137,7 +137,7 @@ def with_translation(
     ) -> tuple[Array, Array | None]:
         if trust is not None:
             rotations = _without_untrusted(rotations, trust)
-            along = None if along is None else _straightened(along, trust[:, 0] > 0)
+            along = None if along is None else _paths.straightened(along, trust[:, 0] > 0)
         levels = noise[there]
         result, moved = ops().smooth(rotations, along, trust, levels, position_noise)
         if together:
@@ -153,15 +153,6 @@ def _trusted_part(translation: Array, clip: _spans.Clip) -> Array:
     if clip.confidence is None:
         return translation
     return np.where(clip.confidence[:, :1] > 0, translation, np.nan).astype(translation.dtype)
-
-
-def _straightened(translation: Array, trusted: Mask) -> Array:
-    """Lead a translation along straight lines where nobody trusts it, if it is trusted anywhere."""
-    if trusted.all() or not trusted.any():
-        return translation
-    frames = np.arange(len(translation))
-    columns = [np.interp(frames, frames[trusted], column[trusted]) for column in translation.T]
-    return np.stack(columns, axis=1).astype(translation.dtype)
 
 
 def _without_untrusted(rotations: Array, trust: Array) -> Array:
