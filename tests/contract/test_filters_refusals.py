@@ -162,7 +162,7 @@ WRONG_OPTIONS_OF_DESPIKE = [
     ("radius", 3.0, TypeError, "expected an integer of at least 2 and at most 1000, got float"),
     ("threshold", 0, ValueError, f"{POSITIVE}, got 0"),
     ("threshold", math.inf, ValueError, f"{POSITIVE}, got inf"),
-    ("threshold", [4.0], TypeError, f"{POSITIVE}, got list"),
+    ("threshold", [4.0], ValueError, "expected a number or one per joint, shape (3,), got (1,)"),
 ]
 """Of options whose names stand for something else in other filters."""
 

@@ -19,7 +19,7 @@ def despike(
     q: ArrayLike,
     *,
     radius: int = 3,
-    threshold: float = 4.0,
+    threshold: PerJoint = 4.0,
     smallest: PerJoint = 0.105,
     confidence: ArrayLike | None = None,
     gaps: _spans.Gaps = "fill",
@@ -44,7 +44,7 @@ def despike(
         Unit quaternions along time. NaN or four zeros are missing samples.
     radius : int, frames, default 3
         Spikes are shorter than this; and so many neighbours on either side are asked. From 2 to 1000.
-    threshold : float, default 4.0
+    threshold : float or array_like (joints,), default 4.0
         How many times as far as usual a spike is. Smaller finds more.
     smallest : float or array_like (joints,), radians of rotation, default 0.105
         Spikes are larger than this. The default is 6°: recordings of bodies jitter by up to that.
@@ -118,7 +118,7 @@ def with_translation(
     translation: Array | None,
     *,
     radius: int,
-    threshold: float,
+    threshold: PerJoint,
     smallest: PerJoint,
     confidence: ArrayLike | None,
     **missing: Any,
@@ -143,7 +143,7 @@ def spikes(
     q: ArrayLike,
     *,
     radius: int = 3,
-    threshold: float = 4.0,
+    threshold: PerJoint = 4.0,
     smallest: PerJoint = 0.105,
     confidence: ArrayLike | None = None,
     max_gap: float | None = None,
@@ -169,7 +169,7 @@ class _Limits:
     """What is a spike, checked."""
 
     radius: int
-    threshold: float
+    threshold: NDArray[np.float64]
     smallest: NDArray[np.float64]
 
     def apply(self, clip: _spans.Clip) -> tuple[Array, Mask]:
@@ -177,7 +177,7 @@ class _Limits:
         found: Mask = np.zeros(clip.rotations.shape[:2], np.bool_)
 
         def run(rotations: Array, trust: Array | None, span: _spans.Span) -> Array:
-            here = self.find(rotations, trust, self.smallest[span.joints])
+            here = self.find(rotations, trust, self.smallest[span.joints], self.threshold[span.joints])
             found[span.frames, span.joints] = here
             gone = here if trust is None else here | (trust == 0)
             # A joint that is trusted nowhere has nothing to be replaced by.
@@ -188,9 +188,9 @@ class _Limits:
 
     def straightened(self, moved: Array, trust: Array | None) -> Array:
         """Return positions ``(frames, 3)`` without their spikes, given confidences ``(frames, 1)``."""
-        if len(moved) < 2:
+        if len(moved) < 2 or not len(self.threshold):
             return moved
-        found = self.find(np.ascontiguousarray(moved[:, None]), trust, np.zeros(1))
+        found = self.find(np.ascontiguousarray(moved[:, None]), trust, np.zeros(1), self.threshold[:1])
         gone = (found if trust is None else found | (trust == 0))[:, 0]
         if not gone.any() or gone.all():
             return moved
@@ -200,17 +200,27 @@ class _Limits:
         result[gone] = np.stack(columns, axis=1)
         return result
 
-    def find(self, x: Array, trust: Array | None, smallest: NDArray[np.float64]) -> Mask:
+    def find(
+        self, x: Array, trust: Array | None, smallest: NDArray[np.float64], threshold: NDArray[np.float64]
+    ) -> Mask:
         """Return where spikes are in rotations ``(frames, joints, 4)`` or positions ``(frames, points, 3)``."""
         known = x if trust is None or x.shape[-1] == 3 else _without(x, trust == 0)
         noise = np.asarray(ops().noise_level(known), np.float64)
-        return cast("Mask", ops().find_spikes(x, trust, noise, smallest, self.radius, self.threshold))
+        found: Mask = np.zeros(x.shape[:2], np.bool_)
+        for level in np.unique(threshold):
+            own = np.flatnonzero(threshold == level)
+            part = np.ascontiguousarray(x[:, own])
+            weights = None if trust is None else np.ascontiguousarray(trust[:, own])
+            found[:, own] = ops().find_spikes(
+                part, weights, noise[own], smallest[own], self.radius, float(level)
+            )
+        return found
 
 
-def _limits(clip: _spans.Clip, radius: int, threshold: float, smallest: PerJoint) -> _Limits:
+def _limits(clip: _spans.Clip, radius: int, threshold: PerJoint, smallest: PerJoint) -> _Limits:
     return _Limits(
         _validation.integer(radius, "radius", at_least=2, at_most=_LONGEST_RADIUS),
-        _validation.number(threshold, "threshold", above=0),
+        _validation.per_joint(threshold, "threshold", clip.rotations.shape[1], above=0),
         _validation.per_joint(smallest, "smallest", clip.rotations.shape[1], at_least=0),
     )
 

@@ -21,6 +21,7 @@ class BilateralStream(_stream.Stream):
 
     All that comes out, put together, is ``bilateral(clip, lookahead=lookahead, boundary=boundary, …)`` of all that was
     pushed, with the same options.
+    Joints that are missing at first, or that nobody trusts, are what `push` says: the clip's filter looks ahead there.
 
     Parameters
     ----------

@@ -18,6 +18,7 @@ class KalmanStream(_stream.Stream):
 
     All that comes out, put together, is ``kalman(clip, lookahead=lookahead, …)`` of all that was pushed, with the same
     noises.
+    Joints that are missing at first, or that nobody trusts, are what `push` says: the clip's filter looks ahead there.
 
     Parameters
     ----------

@@ -23,6 +23,7 @@ class NonlocalPoseMeansStream(_stream.Stream):
     All that comes out, put together, is ``nonlocal_pose_means(clip, lookahead=lookahead, …)`` of all that was pushed, with
     the same options. Nothing later than the pose that was pushed is needed, so options that look at the whole clip are
     refused: an automatic bandwidth, an unlimited search radius, the chart "mean", the boundary "mirror".
+    Joints that are missing, or that nobody trusts, are what `push` says: the clip's filter looks ahead there.
 
     Parameters
     ----------

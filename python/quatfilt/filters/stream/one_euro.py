@@ -15,6 +15,7 @@ class OneEuroStream(_stream.Stream):
     """Smooth a live source as `one_euro` does a clip: one pose in, one pose out, without waiting.
 
     All that comes out, put together, is ``one_euro(clip, …)`` of all that was pushed, with the same options.
+    Joints that are missing at first, or that nobody trusts, are what `push` says: the clip's filter looks ahead there.
 
     Parameters
     ----------
