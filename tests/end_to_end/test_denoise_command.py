@@ -180,7 +180,7 @@ BAD = [
     (["--option", "magic.radius=3"], "magic: expected an option of "),
     (
         ["--option", "bilateral.radius=3"],
-        "bilateral: expected one of the steps nonlocal_pose_means, got another",
+        "bilateral: expected one of the steps despike, smooth, got another",
     ),
     (
         ["--method", "bilateral", "--option", "bilateral.raduis=3"],
