@@ -34,12 +34,23 @@ def write(
     folder.mkdir(parents=True, exist_ok=True)
     written = [folder / f"{stem}.{extension}" for extension in ("md", "json", "png")]
     written[0].write_text(page, encoding="utf-8")
-    written[1].write_text(json.dumps(numbers, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    written[1].write_text(_lines(numbers), encoding="utf-8")
     try:
         draw(written[2])
     except ImportError as error:
         return written[:2], str(error)
     return written, ""
+
+
+def _lines(numbers: Mapping[str, Any]) -> str:
+    """JSON with a line for each key, and one for each element of a list: differences between runs can be read."""
+    keys = []
+    for key, value in numbers.items():
+        text = json.dumps(value, ensure_ascii=False)
+        if isinstance(value, list) and any(isinstance(element, (dict, list)) for element in value):
+            text = "[\n" + ",\n".join(json.dumps(element, ensure_ascii=False) for element in value) + "\n]"
+        keys.append(f"{json.dumps(key)}: {text}")
+    return "{\n" + ",\n".join(keys) + "\n}\n"
 
 
 __all__ = ["write"]

@@ -16,6 +16,9 @@ from quatfilt.evaluation.real_jitter import Jitter
 
 STEM = "nlpm-table1"
 
+DIGITS = 5
+"""Significant digits of the numbers that are kept: the spread over the seeds is in the third."""
+
 COLUMNS = (
     ("PSNR dB", "psnr", 2),
     ("mean °", "angle_mean", 3),
@@ -131,22 +134,27 @@ def as_dict(tables: Tables) -> dict[str, Any]:
             for clip in report.clips
         ],
         "rows": {row: {"oracle": ROWS[row].oracle, "settings": ROWS[row].says} for row in first.rows},
+        "measures": [name for _, name, _ in COLUMNS],
         "results": [_summary(result) for report in tables.reports for result in report.results],
         "real_jitter": [{name: _finite(value) for name, value in vars(one).items()} for one in tables.jitter],
     }
 
 
 def _summary(result: Result) -> dict[str, Any]:
-    values = {name: [getattr(one, name) for one in result.measures] for _, name, _ in COLUMNS}
+    values = [[getattr(one, name) for one in result.measures] for _, name, _ in COLUMNS]
     return {
         "clip": result.clip,
         "fps": result.fps,
         "noise": result.noise,
         "row": result.row,
         "setting": result.setting,
-        "mean": {name: _finite(float(np.mean(each))) for name, each in values.items()},
-        "spread": {name: _finite(float(np.std(each))) for name, each in values.items()},
+        "mean": [_short(float(np.mean(each))) for each in values],
+        "spread": [_short(float(np.std(each))) for each in values],
     }
+
+
+def _short(value: float) -> float | None:
+    return float(f"{value:.{DIGITS}g}") if math.isfinite(value) else None
 
 
 def _finite(value: Any) -> Any:
