@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from typing import Any, overload
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from quatfilt import _validation, chain
@@ -92,8 +91,7 @@ def denoise(
     >>> error(qf.denoise(noisy)) < error(twice) < error(noisy)
     True
     """
-    if not isinstance(translation, (bool, np.bool_)):
-        raise TypeError(f"translation: expected True or False, got {type(translation).__name__}")
+    _validation.switch(translation, "translation")
     if isinstance(motion_or_rotations, Motion):
         motion = motion_or_rotations
         if "scalar_first" in options:

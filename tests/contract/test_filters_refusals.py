@@ -152,6 +152,8 @@ WRONG_OPTIONS = [
     ("confidence", np.linspace(0, 1.5, FRAMES), ValueError, "expected values from 0 to 1, got 1.5"),
     ("confidence", np.linspace(-0.5, 1, FRAMES), ValueError, "expected values from 0 to 1, got -0.5"),
     ("confidence", np.full(FRAMES, np.inf), ValueError, "expected values from 0 to 1, got inf"),
+    ("scalar_first", "x", TypeError, "expected True or False, got str"),
+    ("scalar_first", 0, TypeError, "expected True or False, got int"),
     ("confidence", "high", TypeError, "expected real numbers, got dtype <U4"),
 ]
 

@@ -4,7 +4,7 @@ Arrays leave this package native, C-contiguous, aligned, float32 or float64, and
 """
 
 from quatfilt._validation.arrays import floats, pair, quaternions, scalar_order, vectors
-from quatfilt._validation.choices import choice, known
+from quatfilt._validation.choices import choice, known, switch
 from quatfilt._validation.confidences import confidence, pose_confidence
 from quatfilt._validation.frame_times import times, times_within
 from quatfilt._validation.joints import frequencies, per_joint
@@ -36,6 +36,7 @@ __all__ = [
     "posed",
     "quaternions",
     "scalar_order",
+    "switch",
     "times",
     "times_within",
     "vectors",

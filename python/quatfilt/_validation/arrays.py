@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from quatfilt._typing import Array
+from quatfilt._validation.choices import switch
 
 _WIDEST_INTEGERS = "biu"
 
@@ -28,13 +29,10 @@ def floats(value: Any, name: str) -> Array:
     return np.require(array, dtype, ("C_CONTIGUOUS", "ALIGNED"))
 
 
-def _scalar_first(array: Array, *, scalar_first: bool) -> Array:
-    return array if scalar_first else np.ascontiguousarray(np.roll(array, 1, axis=-1))
-
-
 def scalar_order(array: Array, *, scalar_first: bool) -> Array:
     """Return quaternions that are scalar first in the order that the caller asked for."""
-    return array if scalar_first else np.ascontiguousarray(np.roll(array, -1, axis=-1))
+    first = switch(scalar_first, "scalar_first")
+    return array if first else np.ascontiguousarray(np.roll(array, -1, axis=-1))
 
 
 def quaternions(value: Any, name: str, *, scalar_first: bool = True) -> Array:
@@ -43,7 +41,8 @@ def quaternions(value: Any, name: str, *, scalar_first: bool = True) -> Array:
     if array.ndim < 1 or array.shape[-1] != 4:
         raise ValueError(f"{name}: expected shape (..., 4), got {array.shape}")
     # SciPy's rotations were scalar last by themselves; `scalar_first` then speaks of the result alone.
-    return _scalar_first(array, scalar_first=scalar_first or _is_rotation(value))
+    first = switch(scalar_first, "scalar_first") or _is_rotation(value)
+    return array if first else np.ascontiguousarray(np.roll(array, 1, axis=-1))
 
 
 def _is_rotation(value: Any) -> bool:

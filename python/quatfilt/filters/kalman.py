@@ -224,8 +224,7 @@ def with_translation(
 
 def _reach(*, smooth: bool, lookahead: int | None) -> int:
     """Return how many later frames count; −1 for all."""
-    if not isinstance(smooth, (bool, np.bool_)):
-        raise TypeError(f"smooth: expected True or False, got {type(smooth).__name__}")
+    _validation.switch(smooth, "smooth")
     if lookahead is None:
         return _WHOLE_CLIP if smooth else 0
     frames = _validation.integer(lookahead, "lookahead", at_least=0, at_most=_LONGEST_LOOKAHEAD)
