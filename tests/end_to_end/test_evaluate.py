@@ -77,7 +77,7 @@ def test_without_pywavelets_a_verb_says_what_to_install(verb, tmp_path, capsys, 
     monkeypatch.setitem(sys.modules, "pywt", None)
     monkeypatch.chdir(tmp_path)
     assert main(["evaluate", verb]) == 2
-    assert capsys.readouterr().err == "quatfilt: wavelets need PyWavelets: pip install 'quatfilt[evaluate]'\n"
+    assert capsys.readouterr().err == "quatfilt: wavelets need PyWavelets: pip install 'quatfilt[wavelet]'\n"
     assert not any(tmp_path.iterdir())
 
 

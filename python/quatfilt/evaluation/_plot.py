@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from quatfilt._extras import extra
+
 TRUTH, NOISY, DENOISED = "#000000", "#9AA5B1", "#D55E00"
 """Black, grey and vermilion (Okabe and Ito): told apart by every eye, and in print without colour."""
 
@@ -11,13 +13,12 @@ CYCLE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000
 
 def figure(width: float, height: float) -> Any:
     """Make an empty figure, in inches, that draws into files alone."""
-    try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg  # noqa: PLC0415 - optional
-        from matplotlib.figure import Figure  # noqa: PLC0415 - optional
-    except ImportError:
-        raise ImportError("pictures need matplotlib: pip install 'quatfilt[plot]'") from None
-    result = Figure(figsize=(width, height), dpi=150, layout="constrained")
-    FigureCanvasAgg(result)
+    matplotlib = [
+        extra(f"matplotlib.{module}", "matplotlib", "plot", "pictures")
+        for module in ("figure", "backends.backend_agg")
+    ]
+    result = matplotlib[0].Figure(figsize=(width, height), dpi=150, layout="constrained")
+    matplotlib[1].FigureCanvasAgg(result)
     return result
 
 

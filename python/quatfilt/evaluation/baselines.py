@@ -9,11 +9,12 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from scipy import ndimage, signal
 
+from quatfilt._extras import pywavelets
 from quatfilt.evaluation.channels import Values
 
 Sweep: TypeAlias = Callable[[Values, Sequence[float], float], Iterator[Values]]
@@ -116,15 +117,6 @@ def wavelet(x: Values, factors: Sequence[float], _fps: float = 1.0) -> Iterator[
     for factor in factors:
         shrunk = [np.sign(d) * np.maximum(np.abs(d) - factor * universal, 0) for d in details]
         yield np.asarray(pywt.waverec([coarse, *shrunk], "sym8", axis=0))[: len(x)]
-
-
-def pywavelets() -> Any:
-    """Return PyWavelets, which is an optional extra."""
-    try:
-        import pywt  # noqa: PLC0415 - optional
-    except ImportError:
-        raise ImportError("wavelets need PyWavelets: pip install 'quatfilt[evaluate]'") from None
-    return pywt
 
 
 def kalman_forward(x: Values, ratios: Sequence[float], fps: float) -> Iterator[Values]:
@@ -263,7 +255,6 @@ __all__ = [
     "gaussian",
     "kalman_forward",
     "kalman_smoother",
-    "pywavelets",
     "savgol",
     "wavelet",
 ]

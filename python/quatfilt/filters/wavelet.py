@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from quatfilt import _validation
 from quatfilt._backend import ops
+from quatfilt._extras import pywavelets
 from quatfilt._typing import Array, PerJoint
 from quatfilt.filters import _development, _spans
 
@@ -130,7 +131,7 @@ def with_translation(
 ) -> tuple[Array, Array | None]:
     """Filter as `wavelet` does, and a translation ``(frames, 3)`` by a rule of its own noise: "bayes" for a number."""
     clip = _spans.prepare(q, **missing)
-    pywt = _pywavelets()
+    pywt = pywavelets()
     name = _validation.known(
         wavelet, "wavelet", pywt.wavelist(kind="discrete"), "a discrete wavelet of PyWavelets such as 'sym8'"
     )
@@ -166,14 +167,6 @@ def with_translation(
         return cast("Array", ops().undevelop(rotations, reference, development, shrunk))
 
     return clip.filter(run), moved
-
-
-def _pywavelets() -> ModuleType:
-    try:
-        import pywt  # noqa: PLC0415 - optional
-    except ImportError:
-        raise ImportError("wavelets need PyWavelets: pip install 'quatfilt[wavelet]'") from None
-    return cast("ModuleType", pywt)
 
 
 def _principal_axes(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -29,6 +29,7 @@ def nlpm_table1(
     Writes nlpm-table1.md, nlpm-table1.json and, with matplotlib, nlpm-table1.png. Needs PyWavelets.
     """
     # SciPy would slow down every verb.
+    from quatfilt._extras import pywavelets  # noqa: PLC0415
     from quatfilt.evaluation import (  # noqa: PLC0415
         nlpm_table1,
         nlpm_table1_page,
@@ -37,7 +38,6 @@ def nlpm_table1(
         real_jitter,
     )
     from quatfilt.evaluation._written import write  # noqa: PLC0415
-    from quatfilt.evaluation.baselines import pywavelets  # noqa: PLC0415
     from quatfilt.evaluation.clips import MORE, Clip, load, thinned  # noqa: PLC0415
     from quatfilt.evaluation.noises import NOISES  # noqa: PLC0415
 

@@ -35,10 +35,10 @@ def smooth_goal(
     Writes smooth-goal.md, smooth-goal.json and, with matplotlib, smooth-goal.png. Needs PyWavelets.
     """
     # SciPy would slow down every verb.
+    from quatfilt._extras import pywavelets  # noqa: PLC0415
     from quatfilt.evaluation import smooth_goal as goal  # noqa: PLC0415
     from quatfilt.evaluation import smooth_goal_page  # noqa: PLC0415
     from quatfilt.evaluation._written import write  # noqa: PLC0415
-    from quatfilt.evaluation.baselines import pywavelets  # noqa: PLC0415
     from quatfilt.evaluation.clips import load  # noqa: PLC0415
 
     _validation.choice(method, "--method", METHODS)
