@@ -12,9 +12,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, TryLockError};
 use std::time::{Duration, Instant};
 
-/// Below this many nanoseconds of estimated work the calling thread does it alone: waking a pool costs about ten
-/// microseconds.
-const SERIAL_NANOSECONDS: usize = 50_000;
+/// Below this many nanoseconds of estimated work the calling thread does it alone: waking a pool costs ten microseconds on
+/// a quiet machine and a hundred on a busy one, and two threads save at most half of the work.
+const SERIAL_NANOSECONDS: usize = 200_000;
 
 /// How long to wait for the pool's cell before working alone. A cell that stays locked was copied by a `fork` while
 /// another thread held it, and nobody is left to open it.

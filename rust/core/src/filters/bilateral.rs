@@ -89,7 +89,7 @@ impl<T: Real> Local<T> for Bilateral {
     }
 
     fn nanoseconds(&self) -> usize {
-        20 + 20 * self.radius
+        5 + 3 * self.radius
     }
 
     fn moves(
