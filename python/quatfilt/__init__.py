@@ -33,6 +33,7 @@ from quatfilt.motion.motion import Motion
 from quatfilt.motion.report import Report, report
 from quatfilt.motion.skeleton import EndSite, Skeleton
 from quatfilt.noise.noise import add_gaussian_noise, add_impulse_noise, noise_level
+from quatfilt.reconstruction.database import MotionDatabase
 from quatfilt.rotations.continuity import continuous
 from quatfilt.rotations.mean import mean
 from quatfilt.rotations.quaternion import conjugate, exp, geodesic_distance, log, multiply, normalize
@@ -52,6 +53,7 @@ __all__ = [
     "FileFormatError",
     "KalmanStream",
     "Motion",
+    "MotionDatabase",
     "NonlocalPoseMeansStream",
     "OneEuroStream",
     "QuatfiltError",

@@ -40,6 +40,7 @@ __all__ = [
     "one_euro",
     "one_euro_stream",
     "orientation_filter",
+    "pose_features",
     "read_amc",
     "read_asf",
     "read_bvh",
@@ -52,6 +53,7 @@ __all__ = [
     "smooth",
     "smooth_body",
     "smooth_patches",
+    "split_heading",
     "to_euler",
     "trusted",
     "undevelop",
@@ -296,6 +298,12 @@ def forward_kinematics_moving(
 
 # noise/noise
 def noise_level(q: Array, /) -> Array: ...
+
+# reconstruction/features
+def pose_features(q: Array, means: NDArray[np.float64], weights: NDArray[np.float64], /) -> Array: ...
+
+# reconstruction/heading
+def split_heading(roots: Array, up: int, /) -> tuple[Array, Array]: ...
 
 # rotations/continuity
 def continuous(q: Array, /) -> Array: ...

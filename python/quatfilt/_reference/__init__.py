@@ -29,6 +29,8 @@ from quatfilt._reference.filters.smooth.smooth import smooth
 from quatfilt._reference.filters.weighted_moving_mean import weighted_moving_mean
 from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
 from quatfilt._reference.noise.noise import noise_level
+from quatfilt._reference.reconstruction.features import pose_features
+from quatfilt._reference.reconstruction.heading import split_heading
 from quatfilt._reference.rotations.euler import continuous_euler, from_euler, to_euler
 from quatfilt._reference.rotations.mean import mean
 from quatfilt._reference.rotations.quaternion import (
@@ -70,6 +72,7 @@ __all__ = [
     "normalize",
     "one_euro",
     "orientation_filter",
+    "pose_features",
     "savgol",
     "savgol_derivative",
     "scan",
@@ -77,6 +80,7 @@ __all__ = [
     "smooth",
     "smooth_body",
     "smooth_patches",
+    "split_heading",
     "to_euler",
     "trusted",
     "undevelop",

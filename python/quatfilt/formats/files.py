@@ -162,14 +162,14 @@ def read_bytes(path: str) -> bytes:
         with Path(path).open("rb") as file:
             return file.read()
     except (OSError, ValueError) as error:
-        raise FileAccessError(path, _reason(error)) from None
+        raise FileAccessError(path, reason(error)) from None
 
 
 def write_bytes(path: str, content: Callable[[], bytes]) -> None:
     """Write what `content` returns under a temporary name beside `path`, and rename it."""
     try:
         target = Path(path).resolve()
-        _check_writable(target)
+        check_writable(target)
         data = content()
         if target.exists() and not target.is_file():  # a pipe, a terminal
             target.write_bytes(data)
@@ -178,10 +178,11 @@ def write_bytes(path: str, content: Callable[[], bytes]) -> None:
     except (OSError, ValueError) as error:
         if isinstance(error, FileFormatError):
             raise
-        raise FileAccessError(path, _reason(error)) from None
+        raise FileAccessError(path, reason(error)) from None
 
 
-def _check_writable(target: Path) -> None:
+def check_writable(target: Path) -> None:
+    """Refuse a place where no file can be written."""
     if target.is_dir():
         raise IsADirectoryError(None, "Is a directory")
     if target.exists() and not os.access(target, os.W_OK):
@@ -204,7 +205,8 @@ def _replace(target: Path, data: bytes) -> None:
         raise
 
 
-def _reason(error: Exception) -> str:
+def reason(error: Exception) -> str:
+    """Return what the system says."""
     return getattr(error, "strerror", None) or str(error)
 
 

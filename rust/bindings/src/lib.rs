@@ -8,6 +8,7 @@ mod filters;
 mod formats;
 mod motion;
 mod noise;
+mod reconstruction;
 mod rotations;
 mod threads;
 
@@ -63,6 +64,10 @@ mod _core {
     use super::motion::skeleton::{forward_kinematics, forward_kinematics_moving};
     #[pymodule_export]
     use super::noise::noise::noise_level;
+    #[pymodule_export]
+    use super::reconstruction::features::pose_features;
+    #[pymodule_export]
+    use super::reconstruction::heading::split_heading;
     #[pymodule_export]
     use super::rotations::continuity::continuous;
     #[pymodule_export]

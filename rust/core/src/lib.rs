@@ -10,7 +10,8 @@
 //! - [`rotations`]: algebra, continuity, resampling;
 //! - [`filters`]: filling of gaps;
 //! - [`noise`]: the noise level;
-//! - [`motion`]: forward kinematics.
+//! - [`motion`]: forward kinematics;
+//! - [`reconstruction`]: headings and features of a database of poses.
 //!
 //! Hot kernels are maps over frames on aligned planes: no libm, no fused multiply-add and no horizontal sums, so
 //! that the bits are the same at every SIMD level and for every number of threads.
@@ -25,6 +26,7 @@ pub mod motion;
 pub mod noise;
 pub mod parallel;
 pub mod real;
+pub mod reconstruction;
 pub mod rotations;
 pub mod simd;
 pub mod window;

@@ -1,0 +1,1 @@
+"""Motion from a few trajectories: the database of poses."""

@@ -1,0 +1,397 @@
+"""Databases of poses."""
+
+import os
+from collections.abc import Iterable, Sequence
+from typing import Literal, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from quatfilt import _validation
+from quatfilt._backend import ops
+from quatfilt.motion.motion import Motion
+from quatfilt.motion.skeleton import Skeleton
+from quatfilt.reconstruction.database import building, file
+from quatfilt.reconstruction.database.contents import Contents
+from quatfilt.reconstruction.database.folders import Folders
+from quatfilt.reconstruction.database.takes import How
+
+Axis = Literal["x", "y", "z"]
+PathLike = str | os.PathLike[str]
+
+_AXES: tuple[Axis, ...] = ("x", "y", "z")
+
+
+class MotionDatabase:
+    """Poses of many clips: what motion is reconstructed from.
+
+    `from_motions` makes one of motions, `from_folders` of files, and `open` of a file that `save` wrote, without reading it.
+    All clips have the same joints, matched by name, and one frame rate; the heading of the root, its rotation about the vertical,
+    is kept apart, so that a body that walks north and one that walks east are in the same pose. Nothing of a database changes
+    but its `graph`.
+
+    Parameters
+    ----------
+    contents : Contents
+        What the class methods put together.
+    graph : array_like of int, shape (poses, degree), optional
+        Neighbours of each pose, for a search that goes from neighbour to neighbour; −1 where there are fewer.
+
+    Raises
+    ------
+    ValueError
+        If the graph does not fit the poses.
+
+    See Also
+    --------
+    Motion, read_motion
+
+    References
+    ----------
+    .. [1] C. Mousas, P. Newbury, C.-N. Anagnostopoulos, "Data-driven motion reconstruction using local regression models",
+       AIAI 2014.
+
+    Examples
+    --------
+    >>> import numpy as np, quatfilt as qf
+    >>> arm = qf.Skeleton(["shoulder", "elbow"], [-1, 0], [[0.0, 0, 0], [0, -30, 0]])
+    >>> swing = qf.exp(np.sin(np.arange(240) / 20)[:, None, None] * [[0.5, 0, 0], [0.2, 0, 0]])
+    >>> db = qf.MotionDatabase.from_motions([qf.Motion(swing, fps=120, skeleton=arm)], fps=60)
+    >>> db
+    MotionDatabase(120 poses of 2 joints, 1 clip, 60 fps)
+    >>> db.motion(0)
+    Motion(120 frames of 2 joints, 60 fps, 2 s, float32)
+    """
+
+    __slots__ = ("_contents", "_graph")
+
+    def __init__(self, contents: Contents, *, graph: ArrayLike | None = None) -> None:
+        self._contents = contents
+        self._graph = contents.graph
+        if graph is not None:
+            self.graph = graph
+
+    @classmethod
+    def from_motions(
+        cls,
+        motions: Iterable[Motion],
+        *,
+        fps: float = 60.0,
+        mirror: bool = False,
+        up: Axis = "y",
+        clip_names: Sequence[str] | None = None,
+        joint_weights: ArrayLike | None = None,
+        max_gap: float = 0.1,
+        min_length: float = 0.5,
+    ) -> Self:
+        """Make a database of motions.
+
+        Parameters
+        ----------
+        motions : iterable of Motion
+            Clips of the same joints, in any order of the joints, at any frame rate and in any unit.
+        fps : float, hertz, default 60
+            Frame rate of the database.
+        mirror : bool, default False
+            Whether the mirror image of every clip is added: left and right joints, told by their names, change places.
+        up : {"x", "y", "z"}, default "y"
+            The vertical: ``"y"`` in CMU's recordings and most BVH files, ``"z"`` in AMASS.
+        clip_names : sequence of str, optional
+            Names of the clips; by default their numbers.
+        joint_weights : array_like, shape (joints,), optional
+            Weights in the distance of poses, in the order of the first clip's joints; by default in proportion to the length of
+            the chain below each joint.
+        max_gap : float, seconds, default 0.1
+            Longest run of missing samples that is filled; clips are cut at longer ones.
+        min_length : float, seconds, default 0.5
+            Shorter clips, and pieces of clips, are left out.
+
+        Returns
+        -------
+        MotionDatabase
+            In memory, 884 bytes for each pose of 31 joints. Its `notes` say what was left out.
+
+        Raises
+        ------
+        ValueError
+            If the joints differ, nothing is left, or with ``mirror=True`` left and right are not to be found.
+        TypeError
+            If one of the motions is none.
+        """
+        given = list(motions)
+        for number, motion in enumerate(given):
+            if not isinstance(motion, Motion):
+                raise TypeError(f"motions[{number}]: expected a Motion, got {type(motion).__name__}")
+        if not given:
+            raise ValueError("motions: expected at least one, got none")
+        if clip_names is None:
+            names = [str(number) for number in range(len(given))]
+        else:
+            names = [str(name) for name in clip_names]
+        if len(names) != len(given):
+            raise ValueError(f"clip_names: expected one for each of {len(given)} motions, got {len(names)}")
+        how = _how(fps, up, max_gap, min_length)
+        weights = _weights(joint_weights, len(given[0].skeleton))
+        builder = building.Builder(how, mirror=bool(mirror), weights=weights)
+        for motion, name in zip(given, names, strict=True):
+            builder.add(motion, name)
+        return cls(builder.in_memory())
+
+    @classmethod
+    def from_folders(
+        cls,
+        folders: PathLike | Iterable[PathLike],
+        *,
+        path: PathLike | None = None,
+        fps: float = 60.0,
+        mirror: bool = False,
+        up: Axis = "y",
+        source_fps: float | None = None,
+        skip_others: bool = False,
+        max_gap: float = 0.1,
+        min_length: float = 0.5,
+        workers: int | None = None,
+    ) -> Self:
+        """Make a database of all motion files of some folders.
+
+        Parameters
+        ----------
+        folders : path or iterable of paths
+            Folders, searched at any depth for ``.bvh``, ``.amc`` and ``.npz`` files, and such files.
+        path : path, optional
+            Where the database is written, clip by clip, and opened again: memory then holds a few clips at a time. By default it
+            stays in memory.
+        fps, mirror, up, max_gap, min_length
+            As in `from_motions`.
+        source_fps : float, hertz, optional
+            Frame rate of the files, instead of what they say.
+        skip_others : bool, default False
+            Whether files of other joints than most are left out; by default they are refused.
+        workers : int, optional
+            How many files are read at once; by default one per processor.
+
+        Returns
+        -------
+        MotionDatabase
+            Its `notes` say what was left out: files that cannot be read are.
+
+        Raises
+        ------
+        ValueError
+            As in `from_motions`, or if there is no motion file.
+        FileAccessError
+            If a folder does not exist, or `path` cannot be written.
+        """
+        how = _how(fps, up, max_gap, min_length)
+        places = [folders] if isinstance(folders, (str, os.PathLike)) else list(folders)
+        source = Folders(
+            places,
+            source_fps=None if source_fps is None else _validation.number(source_fps, "source_fps", above=0),
+            skip_others=bool(skip_others),
+            workers=None if workers is None else _validation.integer(workers, "workers", at_least=1),
+        )
+        if path is None:
+            return cls(building.in_memory(source, how, mirror=bool(mirror)))
+        building.to_file(source, how, os.fspath(path), mirror=bool(mirror))
+        return cls.open(path)
+
+    @classmethod
+    def open(cls, path: PathLike, *, verify: bool = False) -> Self:
+        """Open the file of a database.
+
+        Its arrays are maps of the file: what is used is read when it is used.
+
+        Parameters
+        ----------
+        path : str or path
+            What `save` wrote.
+        verify : bool, default False
+            Whether the whole file is read and compared with its check sums.
+
+        Returns
+        -------
+        MotionDatabase
+            With read-only arrays.
+
+        Raises
+        ------
+        FileFormatError
+            If it is no database, a damaged one, or one of a newer version.
+        FileAccessError
+            If it cannot be read.
+        """
+        return cls(file.read(os.fspath(path), verify=verify))
+
+    def save(self, path: PathLike) -> None:
+        """Write the database to a file.
+
+        The file is written under a temporary name and renamed, so that an interrupted run leaves an older file as it was. The
+        same database gives the same bytes.
+
+        Parameters
+        ----------
+        path : str or path
+            The file; any name will do.
+
+        Raises
+        ------
+        FileAccessError
+            If it cannot be written.
+        """
+        file.write(os.fspath(path), self._contents, self._graph)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the joints."""
+        return self._contents.clips.names
+
+    @property
+    def parents(self) -> NDArray[np.int64]:
+        """Index of each joint's parent, −1 for the root, the first joint; shape (joints,)."""
+        return self._contents.clips.parents
+
+    @property
+    def fps(self) -> float:
+        """Frames per second of all clips."""
+        return self._contents.clips.fps
+
+    @property
+    def up(self) -> int:
+        """Axis of the vertical: 0, 1 or 2."""
+        return self._contents.clips.up
+
+    @property
+    def skeleton(self) -> Skeleton:
+        """The mean skeleton: each clip's offsets count as often as it has poses."""
+        return self._contents.clips.skeleton
+
+    @property
+    def skeletons(self) -> tuple[Skeleton, ...]:
+        """The different skeletons of the clips, in the order of joints and the unit of `skeleton`."""
+        return self._contents.clips.skeletons
+
+    @property
+    def skeleton_indices(self) -> NDArray[np.int64]:
+        """Which of the `skeletons` each clip has; shape (clips,)."""
+        return self._contents.clips.skeleton_indices
+
+    @property
+    def clip_names(self) -> tuple[str, ...]:
+        """Names of the clips; ``walk[30:200]`` for a piece (frames of the source), ``walk mirrored`` for a mirror image."""
+        return self._contents.clips.clip_names
+
+    @property
+    def starts(self) -> NDArray[np.int64]:
+        """First pose of each clip, and the number of poses; shape (clips + 1,)."""
+        return self._contents.clips.starts
+
+    @property
+    def rotations(self) -> NDArray[np.float32]:
+        """Rotation of each joint in its parent, that of the root without heading; shape (poses, joints, 4).
+
+        Continuous in sign within each clip.
+        """
+        return self._contents.rotations
+
+    @property
+    def heading(self) -> NDArray[np.float32]:
+        """Turn of the root about the vertical, without jumps within each clip; shape (poses,), radians."""
+        return self._contents.clips.heading
+
+    @property
+    def translation(self) -> NDArray[np.float32]:
+        """Positions of the root; shape (poses, 3), units of `skeleton`."""
+        return self._contents.clips.translation
+
+    @property
+    def mean_rotations(self) -> NDArray[np.float64]:
+        """Karcher mean of each joint over all poses; shape (joints, 4)."""
+        return self._contents.mean_rotations
+
+    @property
+    def joint_weights(self) -> NDArray[np.float64]:
+        """Weight of each joint in the distance of poses; shape (joints,)."""
+        return self._contents.joint_weights
+
+    @property
+    def features(self) -> NDArray[np.float32]:
+        """Poses as vectors ``√w · 2 log(mean⁻¹ q)``, whose distances are those of the poses; shape (poses, 3·joints), radians."""
+        return self._contents.features
+
+    @property
+    def graph(self) -> NDArray[np.int32] | None:
+        """Neighbours of each pose, shape (poses, degree), −1 where there are fewer; None where nobody looked for them."""
+        return self._graph
+
+    @graph.setter
+    def graph(self, neighbors: ArrayLike | None) -> None:
+        self._graph = None if neighbors is None else _validation.graph(neighbors, "graph", len(self))
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was repaired, assumed or left out when the database was made."""
+        return self._contents.clips.notes
+
+    def __len__(self) -> int:
+        return len(self._contents.rotations)
+
+    def __repr__(self) -> str:
+        joints, clips = len(self.names), len(self.clip_names)
+        return (
+            f"MotionDatabase({len(self)} pose{'s' * (len(self) != 1)} of {joints} joint{'s' * (joints != 1)}, "
+            f"{clips} clip{'s' * (clips != 1)}, {self.fps:g} fps)"
+        )
+
+    def motion(self, clip: int) -> Motion:
+        """Return a clip as a motion again, with its heading and its own skeleton.
+
+        Parameters
+        ----------
+        clip : int
+            Number of the clip; negative ones count from the end.
+
+        Returns
+        -------
+        Motion
+            float32, in the order of joints, the unit and at the frame rate of the database.
+
+        Raises
+        ------
+        ValueError
+            If there is no such clip.
+        """
+        clips = len(self.clip_names)
+        number = _validation.integer(clip, "clip", at_least=-clips, at_most=clips - 1) % clips
+        poses = slice(int(self.starts[number]), int(self.starts[number + 1]))
+        rotations = self.rotations[poses].copy()
+        turns = np.zeros((len(rotations), 3))
+        turns[:, self.up] = self.heading[poses] / 2
+        roots = np.ascontiguousarray(rotations[:, 0], np.float64)
+        rotations[:, 0] = ops().multiply(ops().exp(turns), roots)
+        return Motion(
+            rotations,
+            self.translation[poses],
+            fps=self.fps,
+            skeleton=self.skeletons[int(self.skeleton_indices[number])],
+        )
+
+
+def _how(fps: float, up: str, max_gap: float, min_length: float) -> How:
+    return How(
+        fps=_validation.number(fps, "fps", above=0),
+        up=_AXES.index(_validation.choice(up, "up", _AXES)),
+        max_gap=_validation.number(max_gap, "max_gap", at_least=0),
+        min_length=_validation.number(min_length, "min_length", at_least=0),
+    )
+
+
+def _weights(value: ArrayLike | None, joints: int) -> NDArray[np.float64] | None:
+    if value is None:
+        return None
+    weights = _validation.per_joint(np.asarray(value), "joint_weights", joints, at_least=0)
+    if not weights.any():
+        raise ValueError("joint_weights: expected one above 0")
+    return weights
+
+
+__all__ = ["MotionDatabase"]
