@@ -17,6 +17,7 @@ from quatfilt.cli._errors import explained
 from quatfilt.cli._output import refuse_to_wrap
 from quatfilt.cli.batch import batch
 from quatfilt.cli.compare import compare
+from quatfilt.cli.database import database
 from quatfilt.cli.demo import demo
 from quatfilt.cli.denoise import denoise
 from quatfilt.cli.evaluate import evaluate
@@ -35,6 +36,7 @@ app.command(epilog=_steps.explained())(batch)
 app.command()(info)
 app.command()(compare)
 app.command()(demo)
+app.add_typer(database)
 app.add_typer(evaluate)
 
 

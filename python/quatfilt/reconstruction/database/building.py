@@ -1,7 +1,8 @@
 """Motions become a database, in memory or in a file."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +11,20 @@ from quatfilt.motion.motion import Motion
 from quatfilt.reconstruction.database import file
 from quatfilt.reconstruction.database.body import Body
 from quatfilt.reconstruction.database.contents import Clips, Contents, Gathering, measured
-from quatfilt.reconstruction.database.folders import Folders
 from quatfilt.reconstruction.database.mirror import Mirror, mirror_of
 from quatfilt.reconstruction.database.takes import How, takes
 
 Progress = Callable[[int, int], None]
 """Told how many files are done, of how many."""
+
+
+class Source(Protocol):
+    """Motions that come one after the other."""
+
+    def __len__(self) -> int: ...
+
+    def motions(self) -> Iterator[tuple[str, Motion | str]]:
+        """Give names and motions; instead of a motion, why there is none."""
 
 
 @dataclass
@@ -102,14 +111,14 @@ class Builder:
         return Contents(clips, rotations, means, weights, np.concatenate(features))
 
 
-def in_memory(source: Folders, how: How, *, mirror: bool) -> Contents:
+def in_memory(source: Source, how: How, *, mirror: bool) -> Contents:
     """Read folders into memory."""
     builder = Builder(how, mirror=mirror)
     _read(source, builder, None)
     return builder.in_memory()
 
 
-def to_file(source: Folders, how: How, path: str, *, mirror: bool, progress: Progress | None = None) -> None:
+def to_file(source: Source, how: How, path: str, *, mirror: bool, progress: Progress | None = None) -> None:
     """Read folders into the file of a database, in memory of a few clips.
 
     Raises
@@ -132,10 +141,9 @@ def to_file(source: Folders, how: How, path: str, *, mirror: bool, progress: Pro
         file.finish(writer, clips, means, weights, None)
 
 
-def _read(source: Folders, builder: Builder, progress: Progress | None) -> None:
-    done: Iterable[tuple[str, Motion | str]] = source.motions()
+def _read(source: Source, builder: Builder, progress: Progress | None) -> None:
     total = len(source)
-    for number, (name, motion) in enumerate(done):
+    for number, (name, motion) in enumerate(source.motions()):
         if isinstance(motion, str):
             builder.note(motion)
         else:

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterable, Sequence
-from typing import Literal, Self
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,12 +14,9 @@ from quatfilt.motion.skeleton import Skeleton
 from quatfilt.reconstruction.database import building, file
 from quatfilt.reconstruction.database.contents import Contents
 from quatfilt.reconstruction.database.folders import Folders
-from quatfilt.reconstruction.database.takes import How
+from quatfilt.reconstruction.database.takes import Axis, How
 
-Axis = Literal["x", "y", "z"]
 PathLike = str | os.PathLike[str]
-
-_AXES: tuple[Axis, ...] = ("x", "y", "z")
 
 
 class MotionDatabase:
@@ -130,7 +127,7 @@ class MotionDatabase:
             names = [str(name) for name in clip_names]
         if len(names) != len(given):
             raise ValueError(f"clip_names: expected one for each of {len(given)} motions, got {len(names)}")
-        how = _how(fps, up, max_gap, min_length)
+        how = How.checked(fps=fps, up=up, max_gap=max_gap, min_length=min_length)
         weights = _weights(joint_weights, len(given[0].skeleton))
         builder = building.Builder(how, mirror=bool(mirror), weights=weights)
         for motion, name in zip(given, names, strict=True):
@@ -182,7 +179,7 @@ class MotionDatabase:
         FileAccessError
             If a folder does not exist, or `path` cannot be written.
         """
-        how = _how(fps, up, max_gap, min_length)
+        how = How.checked(fps=fps, up=up, max_gap=max_gap, min_length=min_length)
         places = [folders] if isinstance(folders, (str, os.PathLike)) else list(folders)
         source = Folders(
             places,
@@ -374,15 +371,6 @@ class MotionDatabase:
             fps=self.fps,
             skeleton=self.skeletons[int(self.skeleton_indices[number])],
         )
-
-
-def _how(fps: float, up: str, max_gap: float, min_length: float) -> How:
-    return How(
-        fps=_validation.number(fps, "fps", above=0),
-        up=_AXES.index(_validation.choice(up, "up", _AXES)),
-        max_gap=_validation.number(max_gap, "max_gap", at_least=0),
-        min_length=_validation.number(min_length, "min_length", at_least=0),
-    )
 
 
 def _weights(value: ArrayLike | None, joints: int) -> NDArray[np.float64] | None:

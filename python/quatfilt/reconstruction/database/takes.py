@@ -3,10 +3,12 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
+from quatfilt import _validation
 from quatfilt._backend import ops
 from quatfilt._typing import Array, Mask
 from quatfilt.filters.gaps import fill_gaps
@@ -14,6 +16,10 @@ from quatfilt.motion.motion import Motion
 from quatfilt.motion.skeleton import Skeleton
 from quatfilt.reconstruction.database.body import Body, listed
 from quatfilt.rotations.resample import resample
+
+Axis = Literal["x", "y", "z"]
+
+_AXES: tuple[Axis, ...] = ("x", "y", "z")
 
 _SAME_RATE = 1e-9
 """Relative difference of frame rates that is a rounding."""
@@ -42,6 +48,16 @@ class How:
     up: int
     max_gap: float
     min_length: float
+
+    @classmethod
+    def checked(cls, *, fps: float, up: str, max_gap: float, min_length: float) -> Self:
+        """Return what a user asked for."""
+        return cls(
+            fps=_validation.number(fps, "fps", above=0),
+            up=_AXES.index(_validation.choice(up, "up", _AXES)),
+            max_gap=_validation.number(max_gap, "max_gap", at_least=0),
+            min_length=_validation.number(min_length, "min_length", at_least=0),
+        )
 
 
 @dataclass(frozen=True)
