@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from quatfilt._backend import ops
 from quatfilt.motion.skeleton import EndSite, Skeleton
 from quatfilt.reconstruction.database.body import Body
+from quatfilt.reconstruction.database.doubts import Doubts
 from quatfilt.reconstruction.database.takes import How, Take
 from quatfilt.reconstruction.database.weights import joint_weights
 
@@ -133,11 +134,15 @@ class Gathering:
 
     body: Body
     how: How
+    _doubts: Doubts = field(init=False)
     _skeletons: dict[tuple[bytes, tuple[EndSite, ...]], int] = field(default_factory=dict)
     _bodies: list[Skeleton] = field(default_factory=list)
     _takes: list[tuple[str, int, int]] = field(default_factory=list)
     _heading: list[NDArray[np.float32]] = field(default_factory=list)
     _translation: list[NDArray[np.float32]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self._doubts = Doubts(self.how.up)
 
     def __len__(self) -> int:
         return len(self._takes)
@@ -149,6 +154,7 @@ class Gathering:
         if number == len(self._bodies):
             self._bodies.append(take.skeleton)
         self._takes.append((take.name, number, len(take.rotations)))
+        self._doubts.look(take)
         self._heading.append(take.heading)
         self._translation.append(take.translation)
 
@@ -171,7 +177,7 @@ class Gathering:
             np.concatenate([[0], np.cumsum(frames)]),
             np.concatenate(self._heading),
             np.concatenate(self._translation),
-            tuple(notes),
+            (*notes, *self._doubts.notes(self.body.names[0])),
         )
 
 
