@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quatfilt._reference._arrays import Reals
-from quatfilt._reference.rotations.quaternion import between, log_short
+from quatfilt._reference.rotations.quaternion import between, is_missing, log_short
 
 
 def pose_features(q: Reals, means: NDArray[np.float64], weights: NDArray[np.float64]) -> Reals:
@@ -24,4 +24,5 @@ def pose_features(q: Reals, means: NDArray[np.float64], weights: NDArray[np.floa
     """
     with np.errstate(invalid="ignore"):
         vectors = 2 * log_short(between(means[None], q.astype(np.float64)))
-    return (np.sqrt(weights)[:, None] * vectors).reshape(len(q), -1).astype(q.dtype)
+    vectors[is_missing(q)] = np.nan
+    return (np.sqrt(weights)[:, None] * vectors).reshape(len(q), 3 * len(means)).astype(q.dtype)

@@ -28,15 +28,16 @@ def split_heading(roots: Reals, up: int) -> tuple[Reals, Reals]:
     rest : array (frames, 4)
         What is left, computed with the heading as it was rounded, so that both together give `q`; NaN at missing samples.
     """
-    wide = roots.astype(np.float64)
     valid = ~is_missing(roots)
-    w, along = wide[valid, 0], wide[valid, 1 + up]
-    turned = 2 * np.arctan2(along * np.copysign(1, w), np.abs(w))
-    heading = np.full(len(roots), np.nan)
+    q = roots[valid].astype(np.float64)
+    turned = 2 * np.arctan2(q[:, 1 + up] * np.copysign(1, q[:, 0]), np.abs(q[:, 0]))
     whole_turns = np.cumsum(np.round(np.diff(turned, prepend=turned[:1]) / (2 * np.pi)))
+    heading = np.full(len(roots), np.nan, roots.dtype)
     heading[valid] = turned - 2 * np.pi * whole_turns
-    rounded = heading.astype(roots.dtype)
-    back = np.zeros_like(wide)
-    back[:, 0] = np.cos(rounded.astype(np.float64) / 2)
-    back[:, 1 + up] = -np.sin(rounded.astype(np.float64) / 2)
-    return rounded, multiply(back, wide).astype(roots.dtype)
+    half = heading[valid].astype(np.float64) / 2
+    back = np.zeros_like(q)
+    back[:, 0] = np.cos(half)
+    back[:, 1 + up] = -np.sin(half)
+    rest = np.full_like(roots, np.nan)
+    rest[valid] = multiply(back, q)
+    return heading, rest

@@ -1,7 +1,7 @@
 //! Poses as vectors whose distances are those of the poses.
 
 use crate::error::check_length;
-use crate::rotations::quaternion::{between, log_short};
+use crate::rotations::quaternion::{between, is_missing, log_short};
 use crate::simd::multiversion;
 use crate::{ClipView, Error, Real, parallel};
 
@@ -27,7 +27,9 @@ multiversion! {
                 }
             }
             for i in 0..TILE {
-                let vector = log_short(between(mean, std::array::from_fn(|c| samples[c][i])));
+                let q = std::array::from_fn(|c| samples[c][i]);
+                let vector = log_short(between(mean, q));
+                let scale = if is_missing(q) { T::nan() } else { scale };
                 for c in 0..3 {
                     vectors[c][i] = vector[c] * scale;
                 }
@@ -42,7 +44,7 @@ multiversion! {
 }
 
 /// Poses as rotation vectors from the means `(joints, 4)` of their joints, times the roots of weights `(joints)`:
-/// `x_j = √w_j · 2 log(m_j⁻¹ q_j)`, each the shorter way, `(frames, 3·joints)`.
+/// `x_j = √w_j · 2 log(m_j⁻¹ q_j)`, each the shorter way, `(frames, 3·joints)`; NaN where a sample is missing.
 ///
 /// # Errors
 /// [`Error::Length`] if the slices do not fit.
