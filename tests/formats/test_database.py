@@ -1,7 +1,6 @@
 """The file of a motion database: comes back as it was, and nothing else is taken for it."""
 
 import json
-import os
 import re
 import struct
 import zlib
@@ -36,6 +35,11 @@ def saved(db, tmp_path):
     path = tmp_path / "walks.db"
     db.save(path)
     return path
+
+
+def names(folder):
+    """What a folder holds, hidden files too."""
+    return sorted(path.name for path in folder.iterdir())
 
 
 def test_what_was_saved_is_opened(db, path):
@@ -79,7 +83,7 @@ def test_an_open_database_is_saved_over_itself(path):
     other = qf.MotionDatabase.open(path, verify=True)
     np.testing.assert_array_equal(other.graph, db.graph)
     np.testing.assert_array_equal(other.rotations, before)
-    assert os.listdir(path.parent) == [path.name]
+    assert names(path.parent) == [path.name]
 
 
 def test_the_layout_is_what_the_documentation_says(db, path):
@@ -274,7 +278,7 @@ def test_what_cannot_be_written_is_refused(db, tmp_path):
         with pytest.raises(qf.FileAccessError) as error:
             db.save(target)
         assert str(error.value) == f"{target}: {reason}"
-    assert os.listdir(tmp_path) == []
+    assert names(tmp_path) == []
 
 
 def test_an_interrupted_save_leaves_the_old_file(db, path, monkeypatch):
@@ -289,7 +293,7 @@ def test_an_interrupted_save_leaves_the_old_file(db, path, monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         db.save(path)
     assert path.read_bytes() == before
-    assert os.listdir(path.parent) == [path.name]
+    assert names(path.parent) == [path.name]
 
 
 def test_what_a_killed_process_left_is_removed_by_the_next_one(db, path):
@@ -301,5 +305,5 @@ def test_what_a_killed_process_left_is_removed_by_the_next_one(db, path):
         assert not leftover.exists()
         # One that is being written stays.
         db.save(path)
-        assert len(os.listdir(path.parent)) == 3
-    assert sorted(os.listdir(path.parent)) == sorted([path.name, others.name])
+        assert len(names(path.parent)) == 3
+    assert names(path.parent) == sorted([path.name, others.name])
