@@ -8,7 +8,6 @@ NOT_KERNELS = {
     "FileAccessError": "an error",
     "FileFormatError": "an error",
     "Motion": "a class",
-    "MotionDatabase": "a class",
     "QuatfiltError": "an error",
     "Report": "a class",
     "Skeleton": "a class",
@@ -69,6 +68,12 @@ def with_spikes(q):
     return slow
 
 
+def database(q):
+    """Return a database of a clip and its mirror image."""
+    body = qf.Skeleton(["hips", "LeftArm", "RightArm"], [-1, 0, 0], [[0.0, 0, 0], [3, 0, 0], [-3, 0, 0]])
+    return qf.MotionDatabase.from_motions([qf.Motion(q, fps=50, skeleton=body)], mirror=True)
+
+
 CALLS = {
     "BilateralStream": lambda a, _b, _v: streamed(
         qf.BilateralStream(sigma_angle=1.0, iterations=2, lookahead=2), a
@@ -76,6 +81,7 @@ CALLS = {
     "KalmanStream": lambda a, _b, _v: streamed(
         qf.KalmanStream(process_noise=0.1, measurement_noise=0.5, lookahead=7), a
     ),
+    "MotionDatabase": lambda a, _b, _v: database(a).features,
     "NonlocalPoseMeansStream": lambda a, _b, _v: streamed(
         qf.NonlocalPoseMeansStream(bandwidth=1.0, lookahead=7), a
     ),

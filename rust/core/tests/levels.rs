@@ -6,6 +6,7 @@ use quatfilt_core::filters::development::Input;
 use quatfilt_core::filters::nonlocal_pose_means::{Chart, Distance, NonlocalPoseMeans, Weights};
 use quatfilt_core::filters::smooth::{Noisy, REFERENCE_SIGMA, Smoother, smooth_body, smooth_patches};
 use quatfilt_core::parallel::Interrupt;
+use quatfilt_core::reconstruction::features::pose_features;
 use quatfilt_core::rotations::{mean, quaternion};
 use quatfilt_core::simd::Level;
 use quatfilt_core::window::Boundary;
@@ -54,8 +55,11 @@ fn filters<T: Real>() -> Result<Vec<(&'static str, Vec<T>)>, Error> {
     let q = clip::<T>(frames, joints)?;
     let view = ClipView::new(&q, frames, joints)?;
     let interrupt = Interrupt::new();
-    let means = mean::mean(view, None, &interrupt)?;
-    let mut results = vec![("mean", means.into_iter().flatten().map(T::from_f64).collect())];
+    let means: Vec<f64> = mean::mean(view, None, &interrupt)?.into_iter().flatten().collect();
+    let mut vectors = vec![T::ZERO; frames * joints * 3];
+    pose_features(view, &means, &vec![0.5; joints], &mut vectors)?;
+    let means = means.into_iter().map(T::from_f64).collect();
+    let mut results = vec![("mean", means), ("pose_features", vectors)];
     for (chart, name) in [(Chart::Mean, "mean"), (Chart::Identity, "identity"), (Chart::Local, "local")] {
         for (weights, neighbors) in [(Weights::Pose, None), (Weights::Joint, None), (Weights::Pose, Some(5))]
         {

@@ -129,7 +129,7 @@ class MotionDatabase:
             raise ValueError(f"clip_names: expected one for each of {len(given)} motions, got {len(names)}")
         how = How.checked(fps=fps, up=up, max_gap=max_gap, min_length=min_length)
         weights = _weights(joint_weights, len(given[0].skeleton))
-        builder = building.Builder(how, mirror=bool(mirror), weights=weights)
+        builder = building.Builder(how, mirror=_validation.switch(mirror, "mirror"), weights=weights)
         for motion, name in zip(given, names, strict=True):
             builder.add(motion, name)
         return cls(builder.in_memory())
@@ -184,12 +184,12 @@ class MotionDatabase:
         source = Folders(
             places,
             source_fps=None if source_fps is None else _validation.number(source_fps, "source_fps", above=0),
-            skip_others=bool(skip_others),
+            skip_others=_validation.switch(skip_others, "skip_others"),
             workers=None if workers is None else _validation.integer(workers, "workers", at_least=1),
         )
         if path is None:
-            return cls(building.in_memory(source, how, mirror=bool(mirror)))
-        building.to_file(source, how, os.fspath(path), mirror=bool(mirror))
+            return cls(building.in_memory(source, how, mirror=_validation.switch(mirror, "mirror")))
+        building.to_file(source, how, os.fspath(path), mirror=_validation.switch(mirror, "mirror"))
         return cls.open(path)
 
     @classmethod
@@ -217,7 +217,7 @@ class MotionDatabase:
         FileAccessError
             If it cannot be read.
         """
-        return cls(file.read(os.fspath(path), verify=verify))
+        return cls(file.read(os.fspath(path), verify=_validation.switch(verify, "verify")))
 
     def save(self, path: PathLike) -> None:
         """Write the database to a file.

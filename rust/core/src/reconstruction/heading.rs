@@ -20,7 +20,12 @@ fn twist(q: [f64; 4], up: usize) -> f64 {
 ///
 /// # Errors
 /// [`Error::Length`] if the slices do not fit; [`Error::Parameter`] if `up` is no axis.
-pub fn split_heading<T: Real>(roots: &[T], up: usize, heading: &mut [T], rest: &mut [T]) -> Result<(), Error> {
+pub fn split_heading<T: Real>(
+    roots: &[T],
+    up: usize,
+    heading: &mut [T],
+    rest: &mut [T],
+) -> Result<(), Error> {
     check_length("heading", roots.len() / 4, heading.len())?;
     check_length("rest", roots.len(), rest.len())?;
     if up > 2 {
