@@ -178,6 +178,7 @@ def test_an_interrupted_build_cleans_up(tmp_path):
     )
     while not list(out.parent.iterdir()) and process.poll() is None:
         time.sleep(0.002)
+    time.sleep(0.1)
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=60)
     assert (process.returncode, said) == (130, "quatfilt: interrupted\n")

@@ -22,7 +22,7 @@ Axis = Literal["x", "y", "z"]
 _AXES: tuple[Axis, ...] = ("x", "y", "z")
 
 _SAME_RATE = 1e-9
-"""Relative difference of frame rates that is a rounding."""
+"""Relative difference of frame rates, or of their ratio from a whole number, that is a rounding."""
 
 _MOVES = 1e-3
 """Joints that move in their parents by less of the longest bone do not: coordinates in files have a few digits."""
@@ -182,9 +182,14 @@ def _longer_gaps(known: Mask, longest: int) -> Mask:
 
 def _take(name: str, skeleton: Skeleton, path: tuple[Array, Array], fps: float, how: How) -> Take:
     rotations, translation = path
-    if abs(fps / how.fps - 1) > _SAME_RATE:
+    ratio = fps / how.fps
+    whole = max(1, round(ratio))
+    if abs(ratio / whole - 1) < _SAME_RATE:
+        # New frames lie on old ones, which interpolation would give back.
+        rotations, translation = rotations[::whole], translation[::whole]
+    else:
         rotations = resample(rotations, fps=fps, new_fps=how.fps)
-        times = np.arange(len(rotations)) * (fps / how.fps)
+        times = np.arange(len(rotations)) * ratio
         frames = np.arange(len(translation))
         translation = np.stack([np.interp(times, frames, translation[:, c]) for c in range(3)], axis=1)
     poses = rotations.astype(np.float32)

@@ -66,11 +66,21 @@ class Writer:
             _remove_leftovers(self._target)
             stem = self._target.name[:40]
             self._temporary = self._target.with_name(f".{stem}.{secrets.token_hex(6)}{_UNFINISHED}")
-            self._file: IO[bytes] = self._temporary.open("xb")
-            _lock(self._file)
-            self._file.write(bytes(HEADER.size))
+            self._file = self._begun()
         except (OSError, ValueError) as error:
             raise FileAccessError(path, reason(error)) from None
+
+    def _begun(self) -> IO[bytes]:
+        """Return the temporary file, or leave none, even where Ctrl-C comes in between."""
+        try:
+            file = self._temporary.open("xb")
+            _lock(file)
+            file.write(bytes(HEADER.size))
+        except BaseException:
+            with suppress(OSError):
+                self._temporary.unlink()
+            raise
+        return file
 
     def __enter__(self) -> Self:
         return self
