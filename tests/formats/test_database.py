@@ -3,6 +3,7 @@
 import json
 import re
 import struct
+import sys
 import zlib
 
 import numpy as np
@@ -307,3 +308,38 @@ def test_what_a_killed_process_left_is_removed_by_the_next_one(db, path):
         db.save(path)
         assert len(names(path.parent)) == 3
     assert names(path.parent) == sorted([path.name, others.name])
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="not on this platform: files are not sparse")
+def test_millions_of_poses_are_opened_without_being_read(tmp_path):
+    path = tmp_path / "large"
+    qf.MotionDatabase.from_motions([walk(seconds=1)]).save(path)
+    data = path.read_bytes()
+    start, stop = described(data)
+    description, poses = json.loads(data[start:stop]), 6_000_000
+    # A hole of five gigabytes, beyond what 32 bits can count, where the poses would lie.
+    place = len(data) + -len(data) % 64
+    for name in ("rotations", "features", "heading", "translation"):
+        shape = [poses, *description["sections"][name]["shape"][1:]]
+        description["sections"][name].update(shape=shape, offset=place)
+        place += 4 * int(np.prod(shape))
+        place += -place % 64
+    starts = np.array([0, poses])
+    description["sections"]["starts"].update(offset=place, crc32=zlib.crc32(starts.tobytes()))
+    text = json.dumps(description).encode()
+    with path.open("r+b") as handle:
+        handle.seek(place)
+        handle.write(starts.tobytes())
+        handle.write(text)
+        length = handle.tell()
+        header = writer.HEADER.pack(
+            writer.MAGIC, 1, zlib.crc32(text), place + 16, len(text), length, bytes(12), 0
+        )[:-4]
+        handle.seek(0)
+        handle.write(header + struct.pack("<I", zlib.crc32(header)))
+    db = qf.MotionDatabase.open(path)
+    assert len(db) == poses
+    assert db.features.shape == (poses, 63)
+    assert not db.features[-1].any()
+    assert not db.rotations[poses // 2].any()
+    assert 512 * path.stat().st_blocks < 0.01 * length
