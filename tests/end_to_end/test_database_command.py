@@ -100,6 +100,7 @@ def test_other_joints(tmp_path):
     out = tmp_path / "db"
     message = refused("database", "build", folder, "-o", out)
     assert message.startswith("b: expected the joints of a, got none named hips, spine and others, Hips, ")
+    assert message.endswith("; --skip-others leaves out files of other joints than most")
     assert not out.exists()
     said = run("database", "build", folder, "-o", out, "--skip-others").stdout.splitlines()
     assert said[0].startswith("a: left out: other joints: none named Hips, ")

@@ -12,6 +12,7 @@ from quatfilt import _validation
 from quatfilt.cli import _options, _output
 from quatfilt.cli.database._describe import describe, summary
 from quatfilt.reconstruction.database import MotionDatabase, building
+from quatfilt.reconstruction.database.body import OtherJointsError
 from quatfilt.reconstruction.database.folders import Folders
 from quatfilt.reconstruction.database.takes import How
 
@@ -84,13 +85,16 @@ def build(
         workers=None if workers is None else _validation.integer(workers, "--workers", at_least=1),
     )
     with _progress(len(source)) as bar:
-        building.to_file(
-            source,
-            how,
-            str(output),
-            mirror=mirror,
-            progress=lambda done, _total: bar.update(bar.task_ids[0], completed=done),
-        )
+        try:
+            building.to_file(
+                source,
+                how,
+                str(output),
+                mirror=mirror,
+                progress=lambda done, _total: bar.update(bar.task_ids[0], completed=done),
+            )
+        except OtherJointsError as error:
+            raise ValueError(f"{error}; --skip-others leaves out files of other joints than most") from None
     db = MotionDatabase.open(output)
     if json:
         _output.print_json(describe(output, db))

@@ -12,6 +12,10 @@ _NAMED = 4
 """Joints that a message names; more of them are counted."""
 
 
+class OtherJointsError(ValueError):
+    """A clip has other joints than those before it."""
+
+
 @dataclass(frozen=True)
 class Body:
     """The joints of the first clip; those of the others are matched by name.
@@ -54,13 +58,15 @@ class Body:
 
         Raises
         ------
-        ValueError
+        OtherJointsError
             If it has other joints, or the same ones in another tree.
+        ValueError
+            If its joints cannot be told apart by their names.
         """
         check_alone(skeleton, source)
         difference = self.difference(skeleton)
         if difference:
-            raise ValueError(f"{source}: expected the joints of {self.source}, got {difference}")
+            raise OtherJointsError(f"{source}: expected the joints of {self.source}, got {difference}")
         theirs = {name: joint for joint, name in enumerate(skeleton.names)}
         order = np.array([theirs[name] for name in self.names], np.intp)
         scale = skeleton.centimetres_per_unit / self.centimetres_per_unit
