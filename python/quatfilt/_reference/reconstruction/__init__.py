@@ -1,1 +1,1 @@
-"""Motion from a few trajectories: the database of poses."""
+"""Motion from a few trajectories: the database of poses, local models."""

@@ -1,0 +1,1 @@
+"""Local models: the next pose from the last ones, learned from the few examples that are most like them."""
