@@ -41,6 +41,7 @@ __all__ = [
     "one_euro_stream",
     "orientation_filter",
     "pose_features",
+    "predict_pose",
     "read_amc",
     "read_asf",
     "read_bvh",
@@ -304,6 +305,21 @@ def pose_features(q: Array, means: NDArray[np.float64], weights: NDArray[np.floa
 
 # reconstruction/heading
 def split_heading(roots: Array, up: int, /) -> tuple[Array, Array]: ...
+
+# reconstruction/local_models
+def predict_pose(
+    segments: Array,
+    root_steps: Array,
+    recent: Array,
+    joint_weights: NDArray[np.float64],
+    model: str,
+    target: str,
+    deviation: str,
+    bandwidth: float,
+    ridge: float,
+    share: float,
+    /,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
 
 # rotations/continuity
 def continuous(q: Array, /) -> Array: ...

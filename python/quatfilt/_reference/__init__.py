@@ -31,6 +31,7 @@ from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kine
 from quatfilt._reference.noise.noise import noise_level
 from quatfilt._reference.reconstruction.features import pose_features
 from quatfilt._reference.reconstruction.heading import split_heading
+from quatfilt._reference.reconstruction.local_models.predict import predict_pose
 from quatfilt._reference.rotations.euler import continuous_euler, from_euler, to_euler
 from quatfilt._reference.rotations.mean import mean
 from quatfilt._reference.rotations.quaternion import (
@@ -73,6 +74,7 @@ __all__ = [
     "one_euro",
     "orientation_filter",
     "pose_features",
+    "predict_pose",
     "savgol",
     "savgol_derivative",
     "scan",

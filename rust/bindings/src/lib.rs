@@ -69,6 +69,8 @@ mod _core {
     #[pymodule_export]
     use super::reconstruction::heading::split_heading;
     #[pymodule_export]
+    use super::reconstruction::local_models::predict_pose;
+    #[pymodule_export]
     use super::rotations::continuity::continuous;
     #[pymodule_export]
     use super::rotations::euler::{continuous_euler, from_euler, to_euler};

@@ -11,7 +11,7 @@
 //! - [`filters`]: filling of gaps;
 //! - [`noise`]: the noise level;
 //! - [`motion`]: forward kinematics;
-//! - [`reconstruction`]: headings and features of a database of poses.
+//! - [`reconstruction`]: headings and features of a database of poses, local models.
 //!
 //! Hot kernels are maps over frames on aligned planes: no libm, no fused multiply-add and no horizontal sums, so
 //! that the bits are the same at every SIMD level and for every number of threads.

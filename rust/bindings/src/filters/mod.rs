@@ -8,7 +8,7 @@ pub(crate) mod development;
 pub(crate) mod gaps;
 pub(crate) mod gaussian;
 pub(crate) mod kalman;
-mod names;
+pub(crate) mod names;
 pub(crate) mod nonlocal_pose_means;
 pub(crate) mod one_euro;
 pub(crate) mod orientation_filter;

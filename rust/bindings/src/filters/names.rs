@@ -5,7 +5,7 @@ use pyo3::exceptions::PyValueError;
 use quatfilt_core::window::Boundary;
 
 /// The value that a name stands for.
-pub(super) fn named<V: Copy>(argument: &str, name: &str, values: &[(&str, V)]) -> PyResult<V> {
+pub(crate) fn named<V: Copy>(argument: &str, name: &str, values: &[(&str, V)]) -> PyResult<V> {
     values
         .iter()
         .find(|(known, _)| *known == name)

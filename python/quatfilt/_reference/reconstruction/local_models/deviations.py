@@ -19,7 +19,8 @@ MOST_GROWTH = 100.0
 
 def left_out(examples: Examples, residuals: Reals) -> Reals:
     """Deviation of the leave-one-out residuals `√ω_k (y_k − ŷ_k)`, `(K, D)` → `(D,)`: `√(Σ r² / Σ ω)`."""
-    return np.sqrt(np.sum(residuals**2, axis=0) / examples.total)
+    deviation: Reals = np.sqrt(np.sum(residuals**2, axis=0) / examples.total)
+    return deviation
 
 
 def predictive(examples: Examples, residuals: Reals) -> Reals:
@@ -33,7 +34,9 @@ def predictive(examples: Examples, residuals: Reals) -> Reals:
     does when they are frames of a few other clips.
     """
     scale = np.diag(examples.inverse) @ residuals**2 / examples.total
-    return np.minimum(np.sqrt(scale * examples.unseen), MOST_GROWTH * left_out(examples, residuals))
+    deviation: Reals = np.sqrt(scale * examples.unseen)
+    deviation = np.minimum(deviation, MOST_GROWTH * left_out(examples, residuals))
+    return deviation
 
 
 DEVIATIONS = {"leave_one_out": left_out, "predictive": predictive}

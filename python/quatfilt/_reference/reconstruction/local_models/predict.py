@@ -58,7 +58,7 @@ def predict_pose(
 
     Returns
     -------
-    chart : array (joints, 4)
+    chart : array (joints, 4), float64
         Rotations about which the others are vectors.
     mean : array (3·joints + R,), float64
         Rotation vectors of the next pose in radians: joint j is `chart_j · exp(mean_j / 2)`. Then the root's steps.
@@ -81,7 +81,7 @@ def predict_pose(
     scale = np.tile(np.repeat(joint_weights, 3), frames - 1)
     examples = gather(inputs, outputs, query, scale, bandwidth, ridge)
     mean, spread, axes = predicted(examples, model, deviation, share)
-    return chart.astype(segments.dtype), last + mean, np.maximum(spread, LEAST_DEVIATION), axes
+    return chart, last + mean, np.maximum(spread, LEAST_DEVIATION), axes
 
 
 def predicted(examples: Examples, model: str, deviation: str, share: float) -> tuple[Reals, Reals, Reals]:

@@ -24,13 +24,16 @@ def principal_component_regression(examples: Examples, share: float) -> tuple[Re
     """Regression on the principal components of the inputs (Liu et al. 2011): their mean and leave-one-out residuals.
 
     With `X Xᵀ = U Λ Uᵀ` the prediction is `ȳ + (X x_q)ᵀ U Λ⁻¹ Uᵀ y` over the components that make up `share` of the variance.
-    Where an example is left out, the components stay.
+    Where an example is left out, the components stay; one that alone decides its own prediction leaves the mean of the others.
     """
     values, vectors = components(examples.gram, share)
     scores = vectors.T @ examples.outputs
     mean = examples.output_mean + ((vectors.T @ examples.shadow) / values) @ scores
-    seen = np.sum(vectors**2, axis=1) + examples.weights / examples.total
-    return mean, (examples.outputs - vectors @ scores) / np.maximum(1 - seen, LEAST_LEFT)[:, None]
+    share_of_own = examples.weights / examples.total
+    left = (1 - np.sum(vectors**2, axis=1) - share_of_own)[:, None]
+    without = examples.outputs / np.maximum(1 - share_of_own, LEAST_LEFT)[:, None]
+    residuals = (examples.outputs - vectors @ scores) / np.maximum(left, LEAST_LEFT)
+    return mean, np.where(left > LEAST_LEFT, residuals, without)
 
 
 def principal_component_analysis(examples: Examples, share: float) -> tuple[Reals, Reals, Reals]:

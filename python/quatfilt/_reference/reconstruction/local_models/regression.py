@@ -27,6 +27,9 @@ def regression(examples: Examples, direction: str) -> tuple[Reals, Reals]:
     """
     y = examples.outputs
     least_squares = direction == "least_squares"
+    operator: Reals
+    dual: Reals
+    along: Reals
     if least_squares:
         # H = G A = I − λ A.
         operator = np.eye(len(y)) - examples.ridge * examples.inverse
@@ -46,16 +49,18 @@ def regression(examples: Examples, direction: str) -> tuple[Reals, Reals]:
     diagonal = np.diag(operator)[:, None]
     here = along - change * diagonal
     product = np.sum(along * y, axis=0) - change * along - growth * y * here
+    whole = np.sum(along * along, axis=0)
     square = (
-        np.sum(along * along, axis=0)
+        whole
         - 2 * change * (operator @ along)
         + change**2 * np.sum(operator**2, axis=0)[:, None]
         - growth * here**2
     )
+    square = np.where(square > LEAST_LEFT * whole, square, 0)
     return mean, growth * (y - quotient(product, square) * here)
 
 
 def quotient(product: Reals, square: Reals) -> Reals:
-    """`product / square`, and 0 where the square is 0 or rounded below it."""
+    """`product / square`, and 0 where the square is 0."""
     positive = square > 0
     return np.where(positive, product / np.where(positive, square, 1), 0.0)

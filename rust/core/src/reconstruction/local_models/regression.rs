@@ -1,0 +1,91 @@
+//! Regression along one direction for each output (Mousas, Newbury and Anagnostopoulos 2014).
+//!
+//! The matrix of eqs. (5) to (8) has rank one. Its eigenvector is the direction of the weighted least squares with a ridge,
+//! `u ∝ Xᵀ A y`, `A = (XXᵀ + λ I)⁻¹`; that of partial least squares is `u ∝ Xᵀ y`. Along it the coefficient is fitted again
+//! (eq. 9), `γ = (Xu)ᵀy / |Xu|²`. Without example k the means move, by which all that is left of the example grows by
+//! `b = Σω / (Σω − ω_k)`; its product with `x_k` leaves `XᵀX` and `Xᵀy`, and `u` moves by `−κ` times column k of what leads
+//! from y to u.
+
+use super::dense::{Matrix, inner};
+use super::deviations::{Fit, Residuals};
+use super::examples::{Examples, LEAST_LEFT, Ridge};
+use crate::simd::multiversion;
+
+/// What the examples have in common for all outputs, each padded.
+struct Shared {
+    /// `b` of each example.
+    growth: Vec<f64>,
+    /// `κ` is this times the change's row.
+    change: Vec<f64>,
+    /// The diagonals of the operator and of its square.
+    diagonal: Vec<f64>,
+    square: Vec<f64>,
+}
+
+/// The rows of one output.
+struct Rows<'a> {
+    y: &'a [f64],
+    /// `Xu`, and the operator times it.
+    along: &'a [f64],
+    twice: &'a [f64],
+    /// What `κ` is made of.
+    change: &'a [f64],
+}
+
+/// Means and leave-one-out residuals of all outputs, along the directions of least squares, or of partial least squares.
+pub(super) fn regression(examples: &Examples, ridge: &Ridge, least_squares: bool) -> Fit {
+    let y = &examples.outputs;
+    let (lambda, operator, dual) = if least_squares {
+        (examples.ridge, ridge.inverse.hat(examples.ridge), y.times(&ridge.inverse))
+    } else {
+        (0.0, examples.gram.copy(), y.copy())
+    };
+    // H = G A = I − λ A: where λ A y is small, H y is more exact so.
+    let along = if least_squares { y.less(&dual, lambda) } else { y.times(&operator) };
+    let twice = along.times(&operator);
+    let shares = examples.weights.iter().map(|weight| weight / examples.total);
+    let growth: Vec<f64> = shares.clone().map(|share| 1.0 / (1.0 - share).max(LEAST_LEFT)).collect();
+    let change = if least_squares {
+        let left = ridge.diagonal.iter().zip(shares).map(|(inverse, share)| lambda * inverse - share);
+        left.map(|left| lambda / left.max(LEAST_LEFT)).collect()
+    } else {
+        growth.clone()
+    };
+    let shared = Shared { growth, change, diagonal: operator.diagonal(), square: operator.square_diagonal() };
+    let mut residuals = Matrix::new(examples.output_mean.len(), examples.count());
+    let mut mean = Vec::with_capacity(examples.output_mean.len());
+    let rows = y.rows().zip(along.rows()).zip(twice.rows()).zip(dual.rows());
+    for (((((y, along), twice), dual), out), before) in
+        rows.zip(residuals.rows_mut()).zip(&examples.output_mean)
+    {
+        let rows = Rows { y, along, twice, change: dual };
+        let factor = leave_one_out(&rows, &shared, out);
+        mean.push(before + factor * inner(&examples.shadow, dual));
+    }
+    Fit { mean, residuals: Residuals(residuals) }
+}
+
+multiversion! {
+    /// `γ` of one output; the residuals of its examples, each left out, go to `out`.
+    fn leave_one_out(rows: &Rows<'_>, shared: &Shared, out: &mut [f64]) -> f64 {
+        let (product, square) = (inner(rows.along, rows.y), inner(rows.along, rows.along));
+        for k in 0..out.len() {
+            let (y, along, growth) = (rows.y[k], rows.along[k], shared.growth[k]);
+            let change = shared.change[k] * rows.change[k];
+            let here = along - change * shared.diagonal[k];
+            let product = product - change * along - growth * y * here;
+            let left = square - 2.0 * change * rows.twice[k] + change * change * shared.square[k]
+                - growth * (here * here);
+            let left = if left > LEAST_LEFT * square { left } else { 0.0 };
+            out[k] = growth * (y - quotient(product, left) * here);
+        }
+        quotient(product, square)
+    }
+}
+
+/// `product / square`, and 0 where the square is 0.
+#[inline(always)]
+fn quotient(product: f64, square: f64) -> f64 {
+    let ratio = product / if square > 0.0 { square } else { 1.0 };
+    if square > 0.0 { ratio } else { 0.0 }
+}
