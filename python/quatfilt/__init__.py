@@ -34,6 +34,7 @@ from quatfilt.motion.report import Report, report
 from quatfilt.motion.skeleton import EndSite, Skeleton
 from quatfilt.noise.noise import add_gaussian_noise, add_impulse_noise, noise_level
 from quatfilt.reconstruction.database import MotionDatabase
+from quatfilt.reconstruction.local_models import PosePrediction, predict_pose
 from quatfilt.rotations.continuity import continuous
 from quatfilt.rotations.mean import mean
 from quatfilt.rotations.quaternion import conjugate, exp, geodesic_distance, log, multiply, normalize
@@ -56,6 +57,7 @@ __all__ = [
     "MotionDatabase",
     "NonlocalPoseMeansStream",
     "OneEuroStream",
+    "PosePrediction",
     "QuatfiltError",
     "Report",
     "Skeleton",
@@ -84,6 +86,7 @@ __all__ = [
     "normalize",
     "one_euro",
     "orientation_filter",
+    "predict_pose",
     "read_motion",
     "report",
     "resample",

@@ -8,6 +8,7 @@ NOT_KERNELS = {
     "FileAccessError": "an error",
     "FileFormatError": "an error",
     "Motion": "a class",
+    "PosePrediction": "a class",
     "QuatfiltError": "an error",
     "Report": "a class",
     "Skeleton": "a class",
@@ -74,6 +75,14 @@ def database(q):
     return qf.MotionDatabase.from_motions([qf.Motion(q, fps=50, skeleton=body)], mirror=True)
 
 
+def predicted(q):
+    """Predict poses by several models from examples about them."""
+    near = qf.multiply(q[:1], qf.exp(0.2 * qf.log(qf.multiply(qf.conjugate(q[:1]), q[:160]))))
+    examples = near.reshape(40, 4, *q.shape[1:])
+    models = ("local_regression", "local_pcr", "local_pca")
+    return np.concatenate([qf.predict_pose(examples[1:], examples[0, :3], model=m).pose for m in models])
+
+
 CALLS = {
     "BilateralStream": lambda a, _b, _v: streamed(
         qf.BilateralStream(sigma_angle=1.0, iterations=2, lookahead=2), a
@@ -110,6 +119,7 @@ CALLS = {
     "orientation_filter": lambda a, _b, _v: qf.orientation_filter(
         with_gaps(a), [1, 2, 3, 2, 1], confidence=np.arange(FRAMES) % 7 / 6
     ),
+    "predict_pose": lambda a, _b, _v: predicted(a),
     "resample": lambda a, _b, _v: qf.resample(a, fps=30, new_fps=31.7),
     "savgol": lambda a, _b, _v: qf.savgol(with_gaps(a), window_length=11),
     "slerp": lambda a, _b, _v: qf.slerp(a, np.arange(FRAMES), np.linspace(0, FRAMES - 1, 10_001)),

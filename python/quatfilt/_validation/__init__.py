@@ -13,6 +13,7 @@ from quatfilt._validation.masks import mask
 from quatfilt._validation.numbers import integer, interval, number, odd
 from quatfilt._validation.poses import clip, pose
 from quatfilt._validation.randomness import generator
+from quatfilt._validation.segments import joint_weights, root_steps, segments
 from quatfilt._validation.skeletons import offsets, parents, posed
 
 __all__ = [
@@ -25,6 +26,7 @@ __all__ = [
     "graph",
     "integer",
     "interval",
+    "joint_weights",
     "known",
     "mask",
     "number",
@@ -37,7 +39,9 @@ __all__ = [
     "pose_confidence",
     "posed",
     "quaternions",
+    "root_steps",
     "scalar_order",
+    "segments",
     "switch",
     "times",
     "times_within",
