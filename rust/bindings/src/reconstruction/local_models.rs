@@ -9,6 +9,9 @@ use quatfilt_core::reconstruction::local_models::{
     self as core, Deviation, Model, Neighbors, Options, Target,
 };
 
+/// Chart, mean, deviation and axes.
+type Arrays = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
+
 /// Chart, mean, deviation and axes, `(joints, 4)`, `(D)`, `(D)` and `(D, rank)`, from `(K, m + 1, joints, 4)`, `(K, R)`,
 /// `(m, joints, 4)` and `(joints)`.
 #[pyfunction]
@@ -26,7 +29,7 @@ pub(crate) fn predict_pose(
     bandwidth: f64,
     ridge: f64,
     share: f64,
-) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
+) -> PyResult<Arrays> {
     let options = Options {
         model: named(
             "model",

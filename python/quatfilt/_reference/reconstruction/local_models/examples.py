@@ -9,7 +9,7 @@ from quatfilt._reference._arrays import Reals
 
 LEAST_SQUARE = 1e-12
 """Squared radians that stand for no distance: what roundings of float32 make of a pose of a hundred numbers. It scales weights
-where half of the examples are at no distance, and is part of every ridge, so that equal examples have an answer."""
+where half of the examples are at no distance; examples that are no further from each other are equal."""
 
 LEAST_LEFT = 1e-9
 """In shares of all: thousands of roundings of float64 for each of a thousand examples."""
@@ -94,5 +94,7 @@ def gather(
     roots, total = np.sqrt(weights)[:, None], weights.sum()
     input_mean, output_mean = weights @ inputs / total, weights @ outputs / total
     x, y = roots * (inputs - input_mean), roots * (outputs - output_mean)
-    strength = ridge * float(np.sum(x * x)) / len(x) + LEAST_SQUARE
-    return Examples(weights, x, y, output_mean, query - input_mean, strength)
+    variance = float(np.sum(x * x)) / len(x)
+    if variance < LEAST_SQUARE:
+        x, variance = np.zeros_like(x), 0.0
+    return Examples(weights, x, y, output_mean, query - input_mean, ridge * variance + LEAST_SQUARE)

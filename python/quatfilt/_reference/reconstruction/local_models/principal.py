@@ -4,7 +4,7 @@ import numpy as np
 
 from quatfilt._reference._arrays import Reals
 from quatfilt._reference.reconstruction.local_models.deviations import LEAST_DEVIATION
-from quatfilt._reference.reconstruction.local_models.examples import LEAST_LEFT, Examples
+from quatfilt._reference.reconstruction.local_models.examples import LEAST_LEFT, LEAST_SQUARE, Examples
 
 
 def components(gram: Reals, share: float) -> tuple[Reals, Reals]:
@@ -12,7 +12,7 @@ def components(gram: Reals, share: float) -> tuple[Reals, Reals]:
     values, vectors = np.linalg.eigh(gram)
     values, vectors = values[::-1], vectors[:, ::-1]
     kept = min(int(np.searchsorted(np.cumsum(values), share * values.sum())) + 1, len(values))
-    kept = min(kept, int(np.sum(values > LEAST_EIGENVALUE * max(values[0], 0.0))))
+    kept = min(kept, int(np.sum(values > LEAST_EIGENVALUE * max(values[0], LEAST_SQUARE))))
     return values[:kept], vectors[:, :kept]
 
 

@@ -3,42 +3,51 @@
 use super::LANE;
 use super::dense::{Matrix, halves};
 use crate::Real;
+use crate::clip::Planes;
 use crate::rotations::quaternion::{between, dot, log_short, of_row, unit};
 use crate::simd::multiversion;
 
-/// The components of all rotations of `count` examples, a row for each: four for each joint in each frame.
-pub(super) fn components<T: Real>(segments: &[T], places: usize, count: usize) -> Matrix {
-    let mut matrix = Matrix::new(places * 4, count);
-    let width = matrix.width();
-    for (place, rows) in matrix.data_mut().chunks_exact_mut(4 * width).enumerate() {
-        for (example, pose) in segments.chunks_exact(places * 4).enumerate() {
-            let q = &pose[place * 4..place * 4 + 4];
-            rows[example] = q[0].to_f64();
-            rows[width + example] = q[1].to_f64();
-            rows[2 * width + example] = q[2].to_f64();
-            rows[3 * width + example] = q[3].to_f64();
+/// Charts of all joints, and the rotation vectors of the examples in them, a row for each coordinate: those of the frames before
+/// the last one, and those of the last, which are followed by `more` rows of zeros.
+///
+/// A chart touches where the renormalised mean of all poses lies, with signs as seen from the first example's last pose but one.
+pub(super) fn vectors<T: Real>(
+    segments: &[T],
+    (count, frames, joints): (usize, usize, usize),
+    more: usize,
+) -> (Vec<[f64; 4]>, Matrix, Matrix) {
+    let mut inputs = Matrix::new((frames - 1) * joints * 3, count);
+    let mut outputs = Matrix::new(joints * 3 + more, count);
+    let width = inputs.width();
+    let mut components = Planes::new(1, frames * 4 * width);
+    let mut charts = Vec::with_capacity(joints);
+    for joint in 0..joints {
+        for (k, example) in segments.chunks_exact(frames * joints * 4).enumerate() {
+            let rows = components.row_mut(0).chunks_exact_mut(4 * width);
+            for (pose, rows) in example.chunks_exact(joints * 4).zip(rows) {
+                let q = &pose[joint * 4..joint * 4 + 4];
+                for c in 0..4 {
+                    rows[c * width + k] = q[c].to_f64();
+                }
+            }
+        }
+        let rows = || components.row(0).chunks_exact(4 * width);
+        let from = &components.row(0)[(frames - 2) * 4 * width..];
+        let from = [from[0], from[width], from[2 * width], from[3 * width]];
+        let mut sums = [[0.0; LANE]; 4];
+        for rows in rows() {
+            add_alike(rows, from, &mut sums);
+        }
+        let chart = unit(sums.map(halves));
+        charts.push(chart);
+        for (frame, rows) in rows().enumerate() {
+            let last = frame == frames - 1;
+            let row = if last { joint } else { frame * joints + joint };
+            let to = if last { &mut outputs } else { &mut inputs };
+            write_vectors(rows, chart, &mut to.data_mut()[row * 3 * width..][..3 * width]);
         }
     }
-    matrix
-}
-
-/// Where each joint's chart touches the rotations: the renormalised mean of all poses, with signs as seen from the first example
-/// in the frame `reference`.
-pub(super) fn mean(components: &Matrix, joints: usize, reference: usize) -> Vec<[f64; 4]> {
-    let width = components.width();
-    let rows = |place: usize| &components.data()[place * 4 * width..][..4 * width];
-    let places = components.data().len() / (4 * width);
-    (0..joints)
-        .map(|joint| {
-            let from = rows(reference * joints + joint);
-            let from = [from[0], from[width], from[2 * width], from[3 * width]];
-            let mut sums = [[0.0; LANE]; 4];
-            for place in (joint..places).step_by(joints) {
-                add_alike(rows(place), from, &mut sums);
-            }
-            unit(sums.map(halves))
-        })
-        .collect()
+    (charts, inputs, outputs)
 }
 
 multiversion! {
@@ -93,18 +102,6 @@ multiversion! {
             }
         }
     }
-}
-
-/// Rotation vectors of examples, a row for each coordinate.
-pub(super) fn vectors(components: &Matrix, chart: &[[f64; 4]]) -> Matrix {
-    let width = components.width();
-    let places = components.data().len() / (4 * width);
-    let mut matrix = Matrix::new(places * 3, components.columns());
-    let rows = components.data().chunks_exact(4 * width);
-    for (place, (rows, out)) in rows.zip(matrix.data_mut().chunks_exact_mut(3 * width)).enumerate() {
-        write_vectors(rows, chart[place % chart.len()], out);
-    }
-    matrix
 }
 
 /// Rotation vectors of poses in sequence.

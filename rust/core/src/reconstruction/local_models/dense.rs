@@ -9,6 +9,9 @@ use crate::simd::multiversion;
 /// Rows whose sums stay in registers together.
 const PAIR: usize = 2;
 
+/// Rows that are multiplied with each other while they stay in the first-level cache.
+const TOGETHER: usize = 32;
+
 /// A matrix in rows, each padded to whole lanes.
 #[derive(Debug)]
 pub(super) struct Matrix {
@@ -57,16 +60,6 @@ impl Matrix {
     pub(super) fn set(&mut self, row: usize, column: usize, x: f64) {
         let at = row * self.width + column;
         self.data_mut()[at] = x;
-    }
-
-    /// Its first rows, and the others with some more of zeros.
-    pub(super) fn split(&self, first: usize, more: usize) -> (Self, Self) {
-        let (before, after) = self.data().split_at(first * self.width);
-        let mut top = Self::new(first, self.columns);
-        top.data_mut().copy_from_slice(before);
-        let mut rest = Self::new(after.len() / self.width + more, self.columns);
-        rest.data_mut()[..after.len()].copy_from_slice(after);
-        (top, rest)
     }
 
     /// Itself less a multiple of another.
@@ -125,7 +118,9 @@ impl Matrix {
         let mut gram = Self::new(self.columns, self.columns);
         // The pairs of rows may reach beyond the last one, which is padded like the rows themselves.
         let mut square = Planes::new(1, self.width * self.width);
-        products(self.data(), self.width, square.row_mut(0));
+        for rows in self.data().chunks(TOGETHER * self.width) {
+            add_products(rows, self.width, square.row_mut(0));
+        }
         let square = square.row(0);
         let width = self.width;
         for (i, row) in gram.rows_mut().enumerate() {
@@ -157,13 +152,13 @@ impl Matrix {
 }
 
 multiversion! {
-    /// Products `Σ_t x_t x_tᵀ` of rows, from the diagonal on to the right.
-    fn products(rows: &[f64], width: usize, matrix: &mut [f64]) {
+    /// Adds products `Σ_t x_t x_tᵀ` of rows, from the diagonal on to the right.
+    fn add_products(rows: &[f64], width: usize, matrix: &mut [f64]) {
         for top in (0..width).step_by(PAIR) {
             for left in (top / LANE * LANE..width).step_by(LANE) {
                 let mut sums = [[0.0; LANE]; PAIR];
                 for row in rows.chunks_exact(width) {
-                    let down: [f64; PAIR] = std::array::from_fn(|i| row[top + i]);
+                    let down = [row[top], row[top + 1]];
                     let along = &row[left..left + LANE];
                     for j in 0..LANE {
                         for i in 0..PAIR {
@@ -171,8 +166,11 @@ multiversion! {
                         }
                     }
                 }
-                for i in 0..PAIR {
-                    matrix[(top + i) * width + left..][..LANE].copy_from_slice(&sums[i]);
+                for (i, sums) in sums.iter().enumerate() {
+                    let to = &mut matrix[(top + i) * width + left..][..LANE];
+                    for j in 0..LANE {
+                        to[j] += sums[j];
+                    }
                 }
             }
         }
@@ -196,8 +194,8 @@ multiversion! {
                         }
                     }
                 }
-                for i in 0..PAIR {
-                    out[i * second + left..][..LANE].copy_from_slice(&sums[i]);
+                for (i, sums) in sums.iter().enumerate() {
+                    out[i * second + left..][..LANE].copy_from_slice(sums);
                 }
             }
         }
@@ -210,8 +208,8 @@ multiversion! {
         let row = &mut matrix[pivot * width..][..width];
         let inverse = 1.0 / row[pivot];
         row[pivot] = 1.0;
-        for j in 0..width {
-            row[j] *= inverse;
+        for x in &mut *row {
+            *x *= inverse;
         }
         copy.copy_from_slice(row);
         for (k, row) in matrix.chunks_exact_mut(width).enumerate() {
@@ -220,8 +218,8 @@ multiversion! {
             }
             let factor = row[pivot];
             row[pivot] = 0.0;
-            for j in 0..width {
-                row[j] -= factor * copy[j];
+            for (x, y) in row.iter_mut().zip(&*copy) {
+                *x -= factor * y;
             }
         }
     }

@@ -7,8 +7,8 @@ use crate::simd::multiversion;
 use crate::{Error, Real};
 
 /// Squared radians that stand for no distance: what roundings of float32 make of a pose of a hundred numbers. It scales weights
-/// where half of the examples are at no distance, and is part of every ridge, so that equal examples have an answer.
-const LEAST_SQUARE: f64 = 1e-12;
+/// where half of the examples are at no distance; examples that are no further from each other are equal.
+pub(super) const LEAST_SQUARE: f64 = 1e-12;
 
 /// In shares of all: thousands of roundings of float64 for each of a thousand examples.
 pub(super) const LEAST_LEFT: f64 = 1e-9;
@@ -78,11 +78,16 @@ impl Examples {
         for (x, mean) in query.iter_mut().zip(&input_mean) {
             *x -= mean;
         }
-        let gram = inputs.gram();
+        let mut gram = inputs.gram();
         let mut shadow = vec![0.0; width];
         add_multiples(inputs.data(), &query, &mut shadow);
-        let trace: f64 = gram.diagonal().iter().sum();
-        let ridge = options.ridge * trace / count as f64 + LEAST_SQUARE;
+        let mut variance = gram.diagonal().iter().sum::<f64>() / count as f64;
+        if variance < LEAST_SQUARE {
+            gram.data_mut().fill(0.0);
+            shadow.fill(0.0);
+            variance = 0.0;
+        }
+        let ridge = options.ridge * variance + LEAST_SQUARE;
         let square = query.iter().map(|x| x * x).sum();
         Self { weights, roots, total, nearest, outputs, output_mean, gram, shadow, square, ridge }
     }
@@ -143,8 +148,8 @@ multiversion! {
         let width = centre.weights.len();
         for (row, mean) in rows.chunks_exact_mut(width).zip(means) {
             *mean = inner(row, centre.weights) / centre.total;
-            for j in 0..width {
-                row[j] = (row[j] - *mean) * centre.roots[j];
+            for (x, root) in row.iter_mut().zip(centre.roots) {
+                *x = (*x - *mean) * root;
             }
         }
     }

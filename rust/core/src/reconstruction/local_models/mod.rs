@@ -138,9 +138,7 @@ pub fn predict_pose<T: Real>(
     check_length("root_steps", count * roots, root_steps.len())?;
     check_length("recent", (frames - 1) * joints * 4, recent.len())?;
     check_length("joint_weights", joints, joint_weights.len())?;
-    let components = chart::components(segments, frames * joints, count);
-    let chart = chart::mean(&components, joints, frames - 2);
-    let vectors = chart::vectors(&components, &chart);
+    let (chart, inputs, mut outputs) = chart::vectors(segments, (count, frames, joints), roots);
     let query = chart::of_poses(recent, &chart);
     let change = options.target == Target::Change;
     let numbers = joints * 3;
@@ -148,7 +146,6 @@ pub fn predict_pose<T: Real>(
     if change {
         last[..numbers].copy_from_slice(&query[query.len() - numbers..]);
     }
-    let (inputs, mut outputs) = vectors.split(query.len(), roots);
     for (root, row) in outputs.rows_mut().skip(numbers).enumerate() {
         for (x, steps) in row.iter_mut().zip(root_steps.chunks_exact(roots)) {
             *x = steps[root].to_f64();

@@ -3,7 +3,7 @@
 use super::dense::{Matrix, inner};
 use super::deviations::{Fit, LEAST_DEVIATION, Residuals};
 use super::eigen::{Eigen, eigen};
-use super::examples::{Examples, LEAST_LEFT};
+use super::examples::{Examples, LEAST_LEFT, LEAST_SQUARE};
 use crate::Error;
 use crate::parallel::Interrupt;
 
@@ -20,7 +20,7 @@ fn components(gram: Matrix, share: f64, interrupt: &Interrupt) -> Result<(Eigen,
         sum < wanted
     });
     let kept = (enough.count() + 1).min(found.values.len());
-    let least = LEAST_EIGENVALUE * found.values.first().map_or(0.0, |value| value.max(0.0));
+    let least = LEAST_EIGENVALUE * found.values.first().map_or(0.0, |value| value.max(LEAST_SQUARE));
     let positive = found.values.iter().filter(|&&value| value > least).count();
     Ok((found, kept.min(positive)))
 }

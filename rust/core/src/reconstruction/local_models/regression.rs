@@ -6,7 +6,7 @@
 //! `b = Σω / (Σω − ω_k)`; its product with `x_k` leaves `XᵀX` and `Xᵀy`, and `u` moves by `−κ` times column k of what leads
 //! from y to u.
 
-use super::dense::{Matrix, inner};
+use super::dense::inner;
 use super::deviations::{Fit, Residuals};
 use super::examples::{Examples, LEAST_LEFT, Ridge};
 use crate::simd::multiversion;
@@ -25,9 +25,8 @@ struct Shared {
 /// The rows of one output.
 struct Rows<'a> {
     y: &'a [f64],
-    /// `Xu`, and the operator times it.
+    /// `Xu`.
     along: &'a [f64],
-    twice: &'a [f64],
     /// What `κ` is made of.
     change: &'a [f64],
 }
@@ -42,7 +41,8 @@ pub(super) fn regression(examples: &Examples, ridge: &Ridge, least_squares: bool
     };
     // H = G A = I − λ A: where λ A y is small, H y is more exact so.
     let along = if least_squares { y.less(&dual, lambda) } else { y.times(&operator) };
-    let twice = along.times(&operator);
+    // The operator applied twice, in whose place the residuals come.
+    let mut residuals = along.times(&operator);
     let shares = examples.weights.iter().map(|weight| weight / examples.total);
     let growth: Vec<f64> = shares.clone().map(|share| 1.0 / (1.0 - share).max(LEAST_LEFT)).collect();
     let change = if least_squares {
@@ -52,32 +52,34 @@ pub(super) fn regression(examples: &Examples, ridge: &Ridge, least_squares: bool
         growth.clone()
     };
     let shared = Shared { growth, change, diagonal: operator.diagonal(), square: operator.square_diagonal() };
-    let mut residuals = Matrix::new(examples.output_mean.len(), examples.count());
     let mut mean = Vec::with_capacity(examples.output_mean.len());
-    let rows = y.rows().zip(along.rows()).zip(twice.rows()).zip(dual.rows());
-    for (((((y, along), twice), dual), out), before) in
-        rows.zip(residuals.rows_mut()).zip(&examples.output_mean)
-    {
-        let rows = Rows { y, along, twice, change: dual };
-        let factor = leave_one_out(&rows, &shared, out);
+    let rows = y.rows().zip(along.rows()).zip(dual.rows()).zip(residuals.rows_mut());
+    for ((((y, along), dual), twice), before) in rows.zip(&examples.output_mean) {
+        let rows = Rows { y, along, change: dual };
+        let factor = leave_one_out(&rows, &shared, twice);
         mean.push(before + factor * inner(&examples.shadow, dual));
     }
     Fit { mean, residuals: Residuals(residuals) }
 }
 
 multiversion! {
-    /// `γ` of one output; the residuals of its examples, each left out, go to `out`.
+    /// `γ` of one output. `out` is the operator times `Xu`, and becomes the residuals of the examples, each left out.
     fn leave_one_out(rows: &Rows<'_>, shared: &Shared, out: &mut [f64]) -> f64 {
         let (product, square) = (inner(rows.along, rows.y), inner(rows.along, rows.along));
-        for k in 0..out.len() {
-            let (y, along, growth) = (rows.y[k], rows.along[k], shared.growth[k]);
-            let change = shared.change[k] * rows.change[k];
-            let here = along - change * shared.diagonal[k];
+        let Shared { growth, change, diagonal, square: squares } = shared;
+        let width = out.len();
+        let (ys, alongs, changes) = (&rows.y[..width], &rows.along[..width], &rows.change[..width]);
+        let (growth, change) = (&growth[..width], &change[..width]);
+        let (diagonal, squares) = (&diagonal[..width], &squares[..width]);
+        for (k, out) in out.iter_mut().enumerate() {
+            let (y, along, growth) = (ys[k], alongs[k], growth[k]);
+            let change = change[k] * changes[k];
+            let here = along - change * diagonal[k];
             let product = product - change * along - growth * y * here;
-            let left = square - 2.0 * change * rows.twice[k] + change * change * shared.square[k]
-                - growth * (here * here);
+            let left =
+                square - 2.0 * change * *out + change * change * squares[k] - growth * (here * here);
             let left = if left > LEAST_LEFT * square { left } else { 0.0 };
-            out[k] = growth * (y - quotient(product, left) * here);
+            *out = growth * (y - quotient(product, left) * here);
         }
         quotient(product, square)
     }
