@@ -31,7 +31,7 @@ class Problem:
         """`λ`, from the covariance of the inputs."""
         centred = self.x - np.average(self.x, axis=0, weights=self.weights)
         trace = np.trace(centred.T @ (self.weights[:, None] * centred))
-        return share * trace / len(self.x) + 1e-12
+        return share * trace / len(self.x)
 
     def primal(self, used, query, ridge, direction):
         """Predict from the examples `used`, in the space of the inputs: eqs. (8) and (9) of the paper."""

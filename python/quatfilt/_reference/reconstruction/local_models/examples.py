@@ -96,5 +96,6 @@ def gather(
     x, y = roots * (inputs - input_mean), roots * (outputs - output_mean)
     variance = float(np.sum(x * x)) / len(x)
     if variance < LEAST_SQUARE:
-        x, variance = np.zeros_like(x), 0.0
-    return Examples(weights, x, y, output_mean, query - input_mean, ridge * variance + LEAST_SQUARE)
+        # Any ridge will do: 1 leaves no roundings.
+        return Examples(weights, np.zeros_like(x), y, output_mean, query - input_mean, 1.0)
+    return Examples(weights, x, y, output_mean, query - input_mean, ridge * variance)

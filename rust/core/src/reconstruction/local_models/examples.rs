@@ -81,13 +81,14 @@ impl Examples {
         let mut gram = inputs.gram();
         let mut shadow = vec![0.0; width];
         add_multiples(inputs.data(), &query, &mut shadow);
-        let mut variance = gram.diagonal().iter().sum::<f64>() / count as f64;
-        if variance < LEAST_SQUARE {
+        let variance = gram.diagonal().iter().sum::<f64>() / count as f64;
+        let equal = variance < LEAST_SQUARE;
+        if equal {
             gram.data_mut().fill(0.0);
             shadow.fill(0.0);
-            variance = 0.0;
         }
-        let ridge = options.ridge * variance + LEAST_SQUARE;
+        // Of equal examples any ridge will do: 1 leaves no roundings.
+        let ridge = if equal { 1.0 } else { options.ridge * variance };
         let square = query.iter().map(|x| x * x).sum();
         Self { weights, roots, total, nearest, outputs, output_mean, gram, shadow, square, ridge }
     }
