@@ -34,6 +34,7 @@ from quatfilt.motion.report import Report, report
 from quatfilt.motion.skeleton import EndSite, Skeleton
 from quatfilt.noise.noise import add_gaussian_noise, add_impulse_noise, noise_level
 from quatfilt.reconstruction.database import MotionDatabase
+from quatfilt.reconstruction.gplvm import PoseGPLVM
 from quatfilt.reconstruction.local_models import PosePrediction, predict_pose
 from quatfilt.rotations.continuity import continuous
 from quatfilt.rotations.mean import mean
@@ -57,6 +58,7 @@ __all__ = [
     "MotionDatabase",
     "NonlocalPoseMeansStream",
     "OneEuroStream",
+    "PoseGPLVM",
     "PosePrediction",
     "QuatfiltError",
     "Report",

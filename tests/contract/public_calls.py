@@ -8,6 +8,7 @@ NOT_KERNELS = {
     "FileAccessError": "an error",
     "FileFormatError": "an error",
     "Motion": "a class",
+    "PoseGPLVM": "GPy learns it, for seconds",
     "PosePrediction": "a class",
     "QuatfiltError": "an error",
     "Report": "a class",

