@@ -45,9 +45,21 @@ REFUSED = [
     ),
     ({"segments": SEGMENTS[..., :3]}, ValueError, "segments: expected shape (..., 4), got (6, 3, 3, 3)"),
     ({"segments": spoilt(SEGMENTS)}, ValueError, "segments: expected no missing samples, got 3"),
-    ({"segments": lengthened(SEGMENTS)}, ValueError, "segments: expected unit quaternions, got norm 2 at frame 1, joint 2"),
-    ({"recent": RECENT[1:]}, ValueError, "recent: expected shape (2, 3, 4) as the segments begin, got (1, 3, 4)"),
-    ({"recent": RECENT[:, 1:]}, ValueError, "recent: expected shape (2, 3, 4) as the segments begin, got (2, 2, 4)"),
+    (
+        {"segments": lengthened(SEGMENTS)},
+        ValueError,
+        "segments: expected unit quaternions, got norm 2 at frame 1, joint 2",
+    ),
+    (
+        {"recent": RECENT[1:]},
+        ValueError,
+        "recent: expected shape (2, 3, 4) as the segments begin, got (1, 3, 4)",
+    ),
+    (
+        {"recent": RECENT[:, 1:]},
+        ValueError,
+        "recent: expected shape (2, 3, 4) as the segments begin, got (2, 2, 4)",
+    ),
     ({"recent": spoilt(RECENT)}, ValueError, "recent: expected no missing samples, got 1"),
     ({"root_steps": STEPS[1:]}, ValueError, "root_steps: expected shape (6, n), got (5, 4)"),
     ({"root_steps": STEPS[0]}, ValueError, "root_steps: expected shape (6, n), got (4,)"),
@@ -65,11 +77,19 @@ REFUSED = [
         "direction: expected one of 'least_squares', 'partial_least_squares', got 'main'",
     ),
     ({"target": "speed"}, ValueError, "target: expected one of 'pose', 'change', got 'speed'"),
-    ({"deviation": "both"}, ValueError, "deviation: expected one of 'predictive', 'leave_one_out', got 'both'"),
+    (
+        {"deviation": "both"},
+        ValueError,
+        "deviation: expected one of 'predictive', 'leave_one_out', got 'both'",
+    ),
     ({"bandwidth": 0}, ValueError, "bandwidth: expected a number of at least 1e-06, got 0"),
     ({"bandwidth": "wide"}, TypeError, "bandwidth: expected a number of at least 1e-06, got str"),
     ({"ridge": 0}, ValueError, "ridge: expected a number of at least 1e-09 and at most 1e+06, got 0"),
-    ({"ridge": None}, TypeError, "ridge: expected a number of at least 1e-09 and at most 1e+06, got NoneType"),
+    (
+        {"ridge": None},
+        TypeError,
+        "ridge: expected a number of at least 1e-09 and at most 1e+06, got NoneType",
+    ),
     ({"variance": 1.5}, ValueError, "variance: expected a number above 0 and at most 1, got 1.5"),
 ]
 

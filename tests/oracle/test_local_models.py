@@ -70,9 +70,7 @@ def test_residuals_are_those_of_models_fitted_without_the_example(backend, size,
     every = np.arange(size[0])
     others = [np.delete(every, k) for k in every]
     ridge = problem.ridge(0.05)
-    left_out = [
-        problem.y[k] - problem.primal(others[k], problem.x[k], ridge, model) for k in every
-    ]
+    left_out = [problem.y[k] - problem.primal(others[k], problem.x[k], ridge, model) for k in every]
     expected = np.sqrt(np.average(np.square(left_out), axis=0, weights=problem.weights))
     close(deviation, np.maximum(expected, 0.002))
 

@@ -2,7 +2,6 @@
 
 import warnings
 
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -87,7 +86,9 @@ class PoseGPLVM:
     ) -> None:
         every = _validation.quaternions(poses, "poses", scalar_first=scalar_first)
         if every.ndim != 3 or len(every) < 2 or every.shape[1] < 1:
-            raise ValueError(f"poses: expected shape (N, joints, 4) with at least two poses, got {every.shape}")
+            raise ValueError(
+                f"poses: expected shape (N, joints, 4) with at least two poses, got {every.shape}"
+            )
         _, missing = _validation.clip(every, "poses")
         if missing:
             raise ValueError(f"poses: expected no missing samples, got {missing}")
@@ -144,7 +145,9 @@ class PoseGPLVM:
         last = _validation.quaternions(recent, "recent", scalar_first=self._scalar_first)
         joints = len(self._chart)
         if last.ndim != 3 or len(last) < 1 or last.shape[1] != joints:
-            raise ValueError(f"recent: expected shape (m, {joints}, 4) as the model's poses, got {last.shape}")
+            raise ValueError(
+                f"recent: expected shape (m, {joints}, 4) as the model's poses, got {last.shape}"
+            )
         _, missing = _validation.clip(last[-1:], "recent")
         if missing:
             raise ValueError(f"recent: expected no missing samples, got {missing}")

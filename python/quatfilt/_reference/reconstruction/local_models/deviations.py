@@ -34,8 +34,8 @@ def predictive(examples: Examples, residuals: Reals) -> Reals:
     does when they are frames of a few other clips.
     """
     scale = np.diag(examples.inverse) @ residuals**2 / examples.total
-    deviation: Reals = np.sqrt(scale * examples.unseen)
-    deviation = np.minimum(deviation, MOST_GROWTH * left_out(examples, residuals))
+    most = MOST_GROWTH * left_out(examples, residuals)
+    deviation: Reals = np.minimum(np.sqrt(scale * examples.unseen), most)
     return deviation
 
 

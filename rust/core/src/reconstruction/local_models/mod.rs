@@ -87,6 +87,9 @@ impl Default for Options {
 }
 
 /// Examples of how motion goes on.
+///
+/// They should lie apart in time: the nearest frames of a database are neighbours in a few clips, and say the same again and
+/// again. Of examples that begin at every eighth frame at 60 frames per second, the nearest 64 halve the error of regressions.
 #[derive(Debug, Clone, Copy)]
 pub struct Neighbors<'a, T> {
     /// `(count, frames, joints, 4)`: poses, the oldest first, the last of them the next one. No sample is missing.
