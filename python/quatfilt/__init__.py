@@ -28,6 +28,7 @@ from quatfilt.filters.stream.one_euro import OneEuroStream
 from quatfilt.filters.wavelet import wavelet
 from quatfilt.filters.weighted_moving_mean import weighted_moving_mean
 from quatfilt.formats.files import read_motion, write_motion
+from quatfilt.geodesics.pga import PrincipalGeodesicAnalysis
 from quatfilt.motion import metrics
 from quatfilt.motion.motion import Motion
 from quatfilt.motion.report import Report, report
@@ -60,6 +61,7 @@ __all__ = [
     "OneEuroStream",
     "PoseGPLVM",
     "PosePrediction",
+    "PrincipalGeodesicAnalysis",
     "QuatfiltError",
     "Report",
     "Skeleton",

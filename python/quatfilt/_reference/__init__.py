@@ -27,6 +27,8 @@ from quatfilt._reference.filters.smooth.body import smooth_body
 from quatfilt._reference.filters.smooth.patches import smooth_patches
 from quatfilt._reference.filters.smooth.smooth import smooth
 from quatfilt._reference.filters.weighted_moving_mean import weighted_moving_mean
+from quatfilt._reference.geodesics.pga.centre import geodesic_centre
+from quatfilt._reference.geodesics.pga.pga import geodesic_product, geodesic_scores, principal_geodesics
 from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
 from quatfilt._reference.noise.noise import noise_level
 from quatfilt._reference.reconstruction.features import pose_features
@@ -60,7 +62,10 @@ __all__ = [
     "forward_kinematics_moving",
     "from_euler",
     "gaussian",
+    "geodesic_centre",
     "geodesic_distance",
+    "geodesic_product",
+    "geodesic_scores",
     "kalman",
     "kalman_process_noise",
     "kalman_vectors",
@@ -75,6 +80,7 @@ __all__ = [
     "orientation_filter",
     "pose_features",
     "predict_pose",
+    "principal_geodesics",
     "savgol",
     "savgol_derivative",
     "scan",

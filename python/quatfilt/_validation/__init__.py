@@ -8,6 +8,7 @@ from quatfilt._validation.choices import choice, known, switch
 from quatfilt._validation.confidences import confidence, pose_confidence
 from quatfilt._validation.frame_times import times, times_within
 from quatfilt._validation.graphs import graph
+from quatfilt._validation.geodesics import centred, scores
 from quatfilt._validation.joints import frequencies, per_joint
 from quatfilt._validation.masks import mask
 from quatfilt._validation.numbers import integer, interval, number, odd
@@ -17,6 +18,7 @@ from quatfilt._validation.segments import joint_weights, root_steps, segments
 from quatfilt._validation.skeletons import offsets, parents, posed
 
 __all__ = [
+    "centred",
     "choice",
     "clip",
     "confidence",
@@ -41,6 +43,7 @@ __all__ = [
     "quaternions",
     "root_steps",
     "scalar_order",
+    "scores",
     "segments",
     "switch",
     "times",
