@@ -79,6 +79,6 @@ def slope(x: Reals, v: Reals, across: Reals, objective: str) -> Slope:
     hessian = np.mean(over) * np.eye(2) + np.einsum("n,na,nb->ab", along - over, toward, toward) / len(x)
     cone = float(np.sum((np.abs(p) / f)[~off])) / len(x) if objective == "geodesic" else 0.0
     length = norm(u)
-    cosine = np.abs(p) / np.where(length > ON_GEODESIC, length, np.inf)
-    nearest = int(np.argmax(cosine)) if cosine.max(initial=0) > 0 else -1
+    away = np.where(length > ON_GEODESIC, sine / np.where(length > ON_GEODESIC, length, 1), np.inf)
+    nearest = int(np.argmin(away)) if np.isfinite(away).any() else -1
     return Slope(value(x, v, objective), gradient, hessian, cone, nearest)

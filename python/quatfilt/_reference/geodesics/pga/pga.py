@@ -5,11 +5,14 @@ import numpy as np
 from quatfilt._reference._arrays import Mask, Reals
 from quatfilt._reference.geodesics.pga.circle import nearest_in_plane
 from quatfilt._reference.geodesics.pga.objective import basis, value
-from quatfilt._reference.geodesics.pga.sphere import nearest_geodesic
+from quatfilt._reference.geodesics.pga.sphere import nearest_geodesic, principal_axes
 from quatfilt._reference.rotations.quaternion import between, is_missing, multiply, norm, normalize
 
 NOTHING_LEFT = 1e-14
 """Radians on S³: residuals that are all nearer to 1 are roundings, and have no direction."""
+
+FLAT = 1e-14
+"""Distance from a plane through 0, of the longest, up to which vectors lie in it but for roundings."""
 
 DECISIVE = 0.7
 """Share of the greatest parameter from which a sample may decide about the sign of an axis. No share that evenly spaced
@@ -93,13 +96,20 @@ def next_geodesic(x: Reals, before: Reals | None, objective: str) -> tuple[Reals
     if not np.any(norm(x[:, 1:]) > NOTHING_LEFT):
         v = np.array([1.0, 0.0, 0.0])
         return v, [value(x, v, objective)] if len(x) else []
-    if before is None or objective != "geodesic":
-        v, values = nearest_geodesic(x, objective)
-    else:
-        v, values = nearest_in_plane(x, basis(before))
+    plane = None
+    if objective == "geodesic":
+        plane = plane_of(x) if before is None else basis(before)
+    v, values = nearest_geodesic(x, objective) if plane is None else nearest_in_plane(x, plane)
     s = parameters(x, v)
     decisive = s[np.argmax(np.abs(s) >= DECISIVE * np.abs(s).max())]
     return v * np.copysign(1, decisive), values
+
+
+def plane_of(x: Reals) -> Reals | None:
+    """Two unit vectors in the plane of the vector parts, `(2, 3)`; None if they lie in no plane."""
+    axes = principal_axes(x[:, 1:])
+    off = np.abs(x[:, 1:] @ axes[2]).max()
+    return axes[:2] if off <= FLAT * norm(x[:, 1:]).max() else None
 
 
 def parameters(x: Reals, v: Reals) -> Reals:
