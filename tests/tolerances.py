@@ -31,6 +31,13 @@ RISK_BIAS = 0.005
 """In noise variances per frequency, how far the mean of Stein's risk over 4000 draws may lie from the mean squared error: its
 deviation is 0.002 of them, and bins of frequencies add as much."""
 
+DIRECTED = 1e-6
+"""Radians of mean rotation angle that must be left for the direction of the next geodesic to be compared: roundings move it by
+their ratio to what is left."""
+
+DIRECTION = 1e-9
+"""Directions of geodesics in float64: what the issue of principal geodesic analysis asks of their convergence."""
+
 SHORTER_THAN_MASK = 25
 """Frames of such clips, at most: the reach of the mask."""
 
@@ -72,3 +79,8 @@ def principal_axes(dtype, frames):
 def algebra(dtype):
     """Return the tolerance for the algebra by dtype."""
     return ALGEBRA_FLOAT32 if np.dtype(dtype) == np.float32 else ALGEBRA
+
+
+def direction(dtype):
+    """Return the tolerance for directions of geodesics by the dtype of the rotations."""
+    return FLOAT32 if np.dtype(dtype) == np.float32 else DIRECTION

@@ -22,7 +22,10 @@ __all__ = [
     "forward_kinematics_moving",
     "from_euler",
     "gaussian",
+    "geodesic_centre",
     "geodesic_distance",
+    "geodesic_product",
+    "geodesic_scores",
     "get_num_threads",
     "is_debug_build",
     "kalman",
@@ -42,6 +45,7 @@ __all__ = [
     "orientation_filter",
     "pose_features",
     "predict_pose",
+    "principal_geodesics",
     "read_amc",
     "read_asf",
     "read_bvh",
@@ -288,6 +292,14 @@ def read_bvh(data: bytes, /) -> tuple[list[_Joint], tuple[float, str], NDArray[n
 def write_bvh(
     joints: list[_Joint], frame_time: tuple[float, str], values: NDArray[np.float64], /
 ) -> bytes: ...
+
+# geodesics/pga
+def geodesic_centre(q: Array, /) -> tuple[Array, Array, Mask]: ...
+def geodesic_product(scores: Array, means: Array, directions: Array, /) -> Array: ...
+def geodesic_scores(q: Array, means: Array, directions: Array, /) -> Array: ...
+def principal_geodesics(
+    q: Array, means: Array, components: int, most: int, objective: str, tolerance: float, /
+) -> tuple[Array, Array, Array]: ...
 
 # motion/skeleton
 def forward_kinematics(

@@ -82,6 +82,13 @@ def predicted(q):
     examples = near.reshape(40, 4, *q.shape[1:])
     models = ("local_regression", "local_pcr", "local_pca")
     return np.concatenate([qf.predict_pose(examples[1:], examples[0, :3], model=m).pose for m in models])
+def analysed(q):
+    """Fit geodesics to samples in the half about 1, so that there is one mean, and go through all that is asked of them."""
+    near = with_gaps(qf.exp(0.6 * qf.log(q * np.where(q[..., :1] < 0, -1, 1).astype(q.dtype))))
+    pga = qf.PrincipalGeodesicAnalysis(3).fit(near)
+    scores = pga.transform(near)
+    found = [pga.mean_, pga.components_, pga.residuals_, scores, pga.inverse_transform(scores)]
+    return np.concatenate([array.ravel() for array in [*found, pga.reconstruction_error(near, 1)]])
 
 
 CALLS = {
@@ -96,6 +103,7 @@ CALLS = {
         qf.NonlocalPoseMeansStream(bandwidth=1.0, lookahead=7), a
     ),
     "OneEuroStream": lambda a, _b, _v: streamed(qf.OneEuroStream(min_cutoff=0.1, beta=0.1), a),
+    "PrincipalGeodesicAnalysis": lambda a, _b, _v: analysed(a),
     "add_gaussian_noise": lambda a, _b, _v: qf.add_gaussian_noise(a, sigma=0.1, rng=1),
     "add_impulse_noise": lambda a, _b, _v: qf.add_impulse_noise(a, probability=0.1, rng=1),
     "bilateral": lambda a, _b, _v: qf.bilateral(with_gaps(a), sigma_angle=1.0, iterations=2),

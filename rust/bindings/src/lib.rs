@@ -6,7 +6,9 @@
 mod array;
 mod filters;
 mod formats;
+mod geodesics;
 mod motion;
+mod names;
 mod noise;
 mod reconstruction;
 mod rotations;
@@ -60,6 +62,8 @@ mod _core {
     use super::formats::acclaim::{read_amc, read_asf};
     #[pymodule_export]
     use super::formats::bvh::{read_bvh, write_bvh};
+    #[pymodule_export]
+    use super::geodesics::pga::{geodesic_centre, geodesic_product, geodesic_scores, principal_geodesics};
     #[pymodule_export]
     use super::motion::skeleton::{forward_kinematics, forward_kinematics_moving};
     #[pymodule_export]

@@ -12,6 +12,8 @@
 //! - [`noise`]: the noise level;
 //! - [`motion`]: forward kinematics;
 //! - [`reconstruction`]: headings and features of a database of poses, local models.
+//! - [`geodesics`]: principal geodesic analysis;
+//! - [`motion`]: forward kinematics.
 //!
 //! Hot kernels are maps over frames on aligned planes: no libm, no fused multiply-add and no horizontal sums, so
 //! that the bits are the same at every SIMD level and for every number of threads.
@@ -19,9 +21,11 @@
 #![cfg_attr(test, allow(clippy::float_cmp, reason = "tests say exactly what they expect"))]
 
 pub mod clip;
+mod eigen;
 pub mod elementary;
 pub mod error;
 pub mod filters;
+pub mod geodesics;
 pub mod motion;
 pub mod noise;
 pub mod parallel;

@@ -25,6 +25,9 @@ SQUARES = 4
 LEVELS = 12
 """Cuts at most: squares are then a hundredth of a degree wide, and one valley wide."""
 
+MOST_SQUARES = 4096
+"""Squares at once: where more are left, the floor is flat along a line, and any of its points will do."""
+
 ENOUGH = 1e-7
 """Relative: how much lower than what was found a valley may be and be left out."""
 
@@ -92,7 +95,7 @@ def valleys(x: Reals, objective: str) -> list[Reals]:
         found.append(descent(x, directions[np.argmin(values)], objective))
         low = min(history[-1] for _, history in found)
         open_squares = np.flatnonzero(bounds < low * (1 - ENOUGH))
-        if not len(open_squares):
+        if not 0 < 4 * len(open_squares) <= MOST_SQUARES:
             break
         half /= 2
         faces = np.repeat(faces[open_squares], 4)

@@ -2,10 +2,10 @@
 
 use super::LEAST_NOISE;
 use super::about::{About, Noisy};
-use super::axes;
 use super::joint;
 use super::strength::Candidates;
 use crate::clip::Planes;
+use crate::eigen::eigenvectors;
 use crate::error::check_length;
 use crate::filters::columns::BLOCK;
 use crate::parallel::{self, Interrupt};
@@ -118,7 +118,7 @@ fn moving_axes(mean: &[Planes<f64>], frames: usize, interrupt: &Interrupt) -> Re
             products[j * width + i] = products[i * width + j];
         }
     }
-    let axes = axes::eigenvectors(&mut products, width, interrupt)?;
+    let axes = eigenvectors(&mut products, width, interrupt)?;
     let moving = (0..width).filter(|&axis| products[axis * width + axis] > STILL);
     Ok(moving.flat_map(|axis| axes.iter().skip(axis).step_by(width)).copied().collect())
 }

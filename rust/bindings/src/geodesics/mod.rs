@@ -1,0 +1,3 @@
+//! Analysis by geodesics.
+
+pub(crate) mod pga;

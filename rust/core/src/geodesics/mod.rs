@@ -1,0 +1,3 @@
+//! Analysis of rotations by geodesics.
+
+pub mod pga;
