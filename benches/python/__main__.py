@@ -7,7 +7,7 @@ from pathlib import Path
 from conditions import conditions
 from report import Results, aims_table, show, write
 
-ROOMS = ("rotations", "filters", "classical", "noise", "formats")
+ROOMS = ("rotations", "filters", "classical", "noise", "geodesics", "formats")
 
 
 def main() -> None:

@@ -50,8 +50,8 @@ MESSAGES = {
         2 * clip()[:, :1] / 1
     ),
     "rotations: expected at least one sample, got none": lambda: PGA().fit(clip()[:0]),
-    "rotations: expected samples less than π − 0.001 rad from their mean, got 3.1413 rad (180.0°) at joint 0": (
-        lambda: PGA().fit(about_z(*[0.0] * 19, 189.46))
+    "rotations: expected samples less than π − 0.001 rad from their mean, got 3.1409 rad (180.0°) at joint 0": (
+        lambda: PGA().fit(about_z(*[0.0] * 10_000, 179.98))
     ),
     "rotations: expected samples with one mean, got several as good, within 2.0944 rad (120.0°) at joint 0": (
         lambda: PGA().fit(np.eye(4))
@@ -67,6 +67,9 @@ MESSAGES = {
     ),
     "scores: expected shape (frames, at most 2) as in fit, got (20, 3, 2)": (
         lambda: PGA(2).fit(clip()[:, 0]).inverse_transform(np.zeros((20, 3, 2)))
+    ),
+    "scores: expected angles of at most 100000 rad, got 1e+06": (
+        lambda: PGA(2).fit(clip()).inverse_transform(np.full((20, 3, 2), 1e6))
     ),
     "k: expected an integer of at least 0 and at most 2, got 3": (
         lambda: PGA(2).fit(clip()).reconstruction_error(clip(), 3)

@@ -11,6 +11,9 @@ from quatfilt._validation.arrays import floats
 _CUT = 1e-3
 """Radians: samples that lie so near to half a turn from the mean may as well lie on its other side."""
 
+_MOST = 1e5
+"""Radians: sine and cosine are exact up to there, and larger angles have lost digits of their own."""
+
 
 def centred(radius: Array, unique: Mask, name: str = "rotations") -> None:
     """Ask that each joint has samples around one mean, less than half a turn from it.
@@ -35,4 +38,8 @@ def scores(value: Any, shape: tuple[int, ...], most: int) -> Array:
     if array.ndim != len(shape) + 2 or array.shape[1:-1] != shape or array.shape[-1] > most:
         expected = ", ".join(["frames", *map(str, shape), f"at most {most}"])
         raise ValueError(f"scores: expected shape ({expected}) as in fit, got {array.shape}")
+    if (np.abs(array) > _MOST).any():
+        raise ValueError(
+            f"scores: expected angles of at most {_MOST:g} rad, got {np.nanmax(np.abs(array)):g}"
+        )
     return array

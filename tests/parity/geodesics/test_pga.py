@@ -51,7 +51,7 @@ def agree(q, objective, components=4):
     assert result[0].dtype == q.dtype
     np.testing.assert_allclose(result[0][told], expected[0][told], rtol=0, atol=tolerances.direction(q.dtype))
     np.testing.assert_allclose(np.linalg.norm(result[0], axis=-1), 1, atol=tolerances.algebra(q.dtype))
-    for values in result[2].reshape(-1, result[2].shape[-1]):
+    for values in result[2].reshape(components * q.shape[1], -1):
         assert (np.diff(values[np.isfinite(values)]) <= 0).all(), "the objective rises"
 
     scores = [backend.geodesic_scores(q, means, expected[0]) for backend in BACKENDS]
@@ -69,7 +69,7 @@ def agree(q, objective, components=4):
     assert q.tobytes() == before, "the input was written"
 
 
-@settings(max_examples=30)
+@settings(max_examples=25)
 @given(
     seed=seeds,
     frames=st.sampled_from([1, 2, 3, 7, 8, 9, 40, 300]),

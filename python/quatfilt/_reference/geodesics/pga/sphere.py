@@ -37,6 +37,9 @@ BENT = 1.0
 APART = np.radians(2.0)
 """Between directions that descend over all samples: nearer ones end in the same valley."""
 
+ENTRIES = 4
+"""Squares of the first cut whose middles descend on the subset."""
+
 DESCENTS = 3
 """Directions that descend over all samples."""
 
@@ -45,11 +48,18 @@ def nearest_geodesic(x: Reals, objective: str) -> tuple[Reals, list[float]]:
     """Direction with the lowest objective, and the objectives of the descent that led to it; samples `(n, 4)`, not all 1."""
     subset = x[:: -(-len(x) // SUBSET)]
     starts = np.array([*suggested_directions(x), *valleys(subset, objective)])
-    best: list[Reals] = []
-    for index in np.argsort([value(x, v, objective) for v in starts], kind="stable"):
-        if len(best) < DESCENTS and all(abs(starts[index] @ v) < np.cos(APART) for v in best):
-            best.append(starts[index])
-    return min((descent(x, v, objective) for v in best), key=lambda found: found[1][-1])
+    values = np.array([value(x, v, objective) for v in starts])
+    found = [descent(x, v, objective) for v in lowest(starts, values, DESCENTS)]
+    return min(found, key=lambda result: result[1][-1])
+
+
+def lowest(directions: Reals, values: Reals, most: int) -> list[Reals]:
+    """Return the directions with the lowest values, so many at most, each apart from the others."""
+    chosen: list[Reals] = []
+    for index in np.argsort(values, kind="stable"):
+        if len(chosen) < most and all(abs(directions[index] @ v) < np.cos(APART) for v in chosen):
+            chosen.append(directions[index])
+    return chosen
 
 
 def suggested_directions(x: Reals) -> Reals:
@@ -83,16 +93,21 @@ def principal_axes(vectors: Reals) -> Reals:
 def valleys(x: Reals, objective: str) -> list[Reals]:
     """Directions at the bottom of valleys, the lowest of all among them."""
     axes = principal_axes(x[:, 1:])
-    found = [descent(x, v, objective) for v in suggested_directions(x)]
+    suggested = suggested_directions(x)
+    values = np.array([value(x, v, objective) for v in suggested])
+    found = [descent(x, v, objective) for v in lowest(suggested, values, 1)]
     middles = (2 * np.arange(SQUARES) + 1) / SQUARES - 1
     faces = np.repeat(np.arange(3), SQUARES**2)
     first: Reals = np.tile(np.repeat(middles, SQUARES), 3)
     second: Reals = np.tile(middles, 3 * SQUARES)
     half = 1 / SQUARES
-    for _ in range(LEVELS):
+    for level in range(LEVELS):
         directions = square_middles(faces, first, second) @ axes
         values, bounds = lower_bounds(x, directions, np.sqrt(2) * half, objective)
-        found.append(descent(x, directions[np.argmin(values)], objective))
+        low = min(history[-1] for _, history in found)
+        better = values < (low if level else np.inf)
+        starts = lowest(directions[better], values[better], 1 if level else ENTRIES)
+        found += [descent(x, v, objective) for v in starts]
         low = min(history[-1] for _, history in found)
         open_squares = np.flatnonzero(bounds < low * (1 - ENOUGH))
         if not 0 < 4 * len(open_squares) <= MOST_SQUARES:

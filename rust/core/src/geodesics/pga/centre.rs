@@ -4,7 +4,7 @@ use super::samples::{LANES, Quad, Samples};
 use crate::eigen::eigenvectors;
 use crate::parallel::{self, Interrupt};
 use crate::rotations::mean::mean;
-use crate::rotations::quaternion::{between, dot, exp_one, product, unit};
+use crate::rotations::quaternion::{angle_between, between, exp_one, product, unit};
 use crate::simd::multiversion;
 use crate::{ClipView, Error, Real};
 
@@ -46,8 +46,7 @@ pub fn geodesic_centre<T: Real>(clip: ClipView<'_, T>, interrupt: &Interrupt) ->
     let (frames, joints) = (clip.frames(), clip.joints());
     let wide: Vec<f64> = clip.data().iter().map(|x| x.to_f64()).collect();
     let means = mean(ClipView::new(&wide, frames, joints)?, None, interrupt)?;
-    let tasks: Vec<[f64; 4]> = means;
-    parallel::map(tasks, frames * joints * 20, |joint, mean| {
+    parallel::map(means, frames * joints * 20, |joint, mean| {
         let samples = Samples::of_joint(clip, joint, mean);
         if samples.count() == 0 {
             return Ok(Centre { mean: [f64::NAN; 4], radius: f64::NAN, unique: true });
@@ -61,7 +60,8 @@ pub fn geodesic_centre<T: Real>(clip: ClipView<'_, T>, interrupt: &Interrupt) ->
 /// Whether the iteration for the mean ends nowhere else with as small a mean square as from 1.
 fn is_only_mean(samples: &Samples, interrupt: &Interrupt) -> Result<bool, Error> {
     let count = samples.count() as f64;
-    let sums = samples.sums(3, interrupt, add_moments)?;
+    let mut sums = samples.sums(3, interrupt, add_moments)?;
+    sums[0] -= samples.filling() as f64;
     let mut matrix = [0.0; 16];
     let mut entries = sums.into_iter();
     for i in 0..4 {
@@ -82,7 +82,7 @@ fn is_only_mean(samples: &Samples, interrupt: &Interrupt) -> Result<bool, Error>
     let least = square / count * (1.0 + AS_GOOD);
     for start in starts {
         let (other, square) = iterated(samples, start, interrupt)?;
-        let apart = 0.5 * crate::rotations::quaternion::angle_between(here, other);
+        let apart = 0.5 * angle_between(here, other);
         if apart > SAME_MEAN && square / count <= least {
             return Ok(false);
         }
@@ -95,7 +95,10 @@ fn iterated(samples: &Samples, start: [f64; 4], interrupt: &Interrupt) -> Result
     let mut x = start;
     let mut square = f64::INFINITY;
     for _ in 0..=ITERATIONS {
-        let [a, b, c, sum] = samples.sums(5, interrupt, |part, sums| add_logarithms(part, x, sums))?;
+        let sums = samples.sums(5, interrupt, |part, sums| add_logarithms(part, x, sums))?;
+        let mut filling = [[0.0; LANES]; 4];
+        add_logarithms([&[1.0; LANES], &[0.0; LANES], &[0.0; LANES], &[0.0; LANES]], x, &mut filling);
+        let [a, b, c, sum] = std::array::from_fn(|i| sums[i] - filling[i][0] * samples.filling() as f64);
         square = sum;
         let step = [a, b, c].map(|total| total / samples.count() as f64);
         if (step[0] * step[0] + step[1] * step[1] + step[2] * step[2]).sqrt() < STEP {
@@ -139,7 +142,7 @@ multiversion! {
         for (((w, x), y), z) in w.iter().zip(x).zip(y).zip(z) {
             for c in 0..LANES {
                 let d = between(centre, [w[c], x[c], y[c], z[c]]);
-                let sine = (dot([0.0, d[1], d[2], d[3]], [0.0, d[1], d[2], d[3]]) + f64::TINY_SQUARE).sqrt();
+                let sine = (d[1] * d[1] + d[2] * d[2] + d[3] * d[3] + f64::TINY_SQUARE).sqrt();
                 let angle = sine.atan2_nonnegative(d[0].abs());
                 let factor = (angle / sine).copysign(d[0]);
                 sums[0][c] += factor * d[1];

@@ -55,6 +55,11 @@ impl Samples {
         self.count
     }
 
+    /// How many ones fill up the last lanes.
+    pub(super) fn filling(&self) -> usize {
+        self.planes.length() - self.count
+    }
+
     pub(super) fn at(&self, i: usize) -> [f64; 4] {
         std::array::from_fn(|row| self.planes.row(row)[i])
     }

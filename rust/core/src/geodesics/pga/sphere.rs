@@ -38,6 +38,9 @@ const APART: f64 = 0.999_390_827_019_095_8;
 /// Directions that descend over all samples.
 const DESCENTS: usize = 3;
 
+/// Squares of the first cut whose middles descend on the subset.
+const ENTRIES: usize = 4;
+
 /// Directions per task.
 const TASK: usize = 16;
 
@@ -51,25 +54,30 @@ pub(super) fn nearest_geodesic(
     let subset = samples.subset(SUBSET);
     let mut starts = suggested.to_vec();
     starts.extend(valleys(&subset, objective, interrupt)?);
-    let mut ranked = Vec::with_capacity(starts.len());
+    let mut tried = Vec::with_capacity(starts.len());
     for v in starts {
-        ranked.push((value(samples, v, objective, interrupt)?, v));
+        tried.push((value(samples, v, objective, interrupt)?, v));
     }
-    ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut best: Vec<[f64; 3]> = Vec::new();
-    for (_, v) in ranked {
-        if best.len() < DESCENTS && best.iter().all(|&other| dot(v, other).abs() < APART) {
-            best.push(v);
-        }
-    }
-    let mut lowest: Option<Found> = None;
-    for v in best {
+    let mut best: Option<Found> = None;
+    for v in lowest(tried, DESCENTS) {
         let found = descent(samples, v, objective, interrupt)?;
-        if lowest.as_ref().is_none_or(|lowest| found.value() < lowest.value()) {
-            lowest = Some(found);
+        if best.as_ref().is_none_or(|best| found.value() < best.value()) {
+            best = Some(found);
         }
     }
-    Ok(lowest.unwrap_or(Found { direction: [1.0, 0.0, 0.0], descent: Vec::new() }))
+    Ok(best.unwrap_or(Found { direction: [1.0, 0.0, 0.0], descent: Vec::new() }))
+}
+
+/// The directions with the lowest values, so many at most, each apart from the others.
+fn lowest(mut tried: Vec<(f64, [f64; 3])>, most: usize) -> Vec<[f64; 3]> {
+    tried.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut chosen: Vec<[f64; 3]> = Vec::new();
+    for (_, v) in tried {
+        if chosen.len() < most && chosen.iter().all(|&other| dot(v, other).abs() < APART) {
+            chosen.push(v);
+        }
+    }
+    chosen
 }
 
 /// Directions that formulas suggest: principal axes of the vector parts and of the logarithms, and the paper's eq. (14).
@@ -117,8 +125,12 @@ impl Square {
 /// Directions at the bottom of valleys, the lowest of all among them.
 fn valleys(samples: &Samples, objective: Objective, interrupt: &Interrupt) -> Result<Vec<[f64; 3]>, Error> {
     let axes = principal_axes(samples, false, interrupt)?;
-    let mut found = Vec::new();
+    let mut suggested = Vec::new();
     for v in suggested_directions(samples, interrupt)? {
+        suggested.push((value(samples, v, objective, interrupt)?, v));
+    }
+    let mut found = Vec::new();
+    for v in lowest(suggested, 1) {
         found.push(descent(samples, v, objective, interrupt)?);
     }
     let middle = |i: usize| (2 * i + 1) as f64 / SQUARES as f64 - 1.0;
@@ -129,13 +141,21 @@ fn valleys(samples: &Samples, objective: Objective, interrupt: &Interrupt) -> Re
         })
         .collect();
     let mut half = 1.0 / SQUARES as f64;
-    for _ in 0..LEVELS {
+    for level in 0..LEVELS {
         let directions: Vec<[f64; 3]> = squares.iter().map(|square| square.direction(&axes)).collect();
         let reach = std::f64::consts::SQRT_2 * half;
         let bounds = lower_bounds(samples, &directions, reach, objective, interrupt)?;
-        let best = (0..bounds.len()).fold(0, |best, i| if bounds[i].0 < bounds[best].0 { i } else { best });
-        found.push(descent(samples, directions[best], objective, interrupt)?);
         let low = found.iter().map(Found::value).fold(f64::INFINITY, f64::min);
+        let tried = bounds.iter().zip(&directions).map(|(bound, v)| (bound.0, *v));
+        let starts = if level == 0 {
+            lowest(tried.collect(), ENTRIES)
+        } else {
+            lowest(tried.filter(|(value, _)| *value < low).collect(), 1)
+        };
+        for v in starts {
+            found.push(descent(samples, v, objective, interrupt)?);
+        }
+        let low = found.iter().map(Found::value).fold(low, f64::min);
         half /= 2.0;
         squares = squares
             .iter()
