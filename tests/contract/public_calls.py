@@ -82,6 +82,8 @@ def predicted(q):
     examples = near.reshape(40, 4, *q.shape[1:])
     models = ("local_regression", "local_pcr", "local_pca")
     return np.concatenate([qf.predict_pose(examples[1:], examples[0, :3], model=m).pose for m in models])
+
+
 def analysed(q):
     """Fit geodesics to samples in the half about 1, so that there is one mean, and go through all that is asked of them."""
     near = with_gaps(qf.exp(0.6 * qf.log(q * np.where(q[..., :1] < 0, -1, 1).astype(q.dtype))))

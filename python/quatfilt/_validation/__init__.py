@@ -7,8 +7,8 @@ from quatfilt._validation.arrays import floats, pair, quaternions, scalar_order,
 from quatfilt._validation.choices import choice, known, switch
 from quatfilt._validation.confidences import confidence, pose_confidence
 from quatfilt._validation.frame_times import times, times_within
-from quatfilt._validation.graphs import graph
 from quatfilt._validation.geodesics import centred, scores
+from quatfilt._validation.graphs import graph
 from quatfilt._validation.joints import frequencies, per_joint
 from quatfilt._validation.masks import mask
 from quatfilt._validation.numbers import integer, interval, number, odd

@@ -8,7 +8,6 @@ mod filters;
 mod formats;
 mod geodesics;
 mod motion;
-mod names;
 mod noise;
 mod reconstruction;
 mod rotations;

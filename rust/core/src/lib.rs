@@ -10,10 +10,9 @@
 //! - [`rotations`]: algebra, continuity, resampling;
 //! - [`filters`]: filling of gaps;
 //! - [`noise`]: the noise level;
+//! - [`geodesics`]: principal geodesic analysis;
 //! - [`motion`]: forward kinematics;
 //! - [`reconstruction`]: headings and features of a database of poses, local models.
-//! - [`geodesics`]: principal geodesic analysis;
-//! - [`motion`]: forward kinematics.
 //!
 //! Hot kernels are maps over frames on aligned planes: no libm, no fused multiply-add and no horizontal sums, so
 //! that the bits are the same at every SIMD level and for every number of threads.

@@ -1,7 +1,7 @@
 //! Names that stand for choices.
 
-pub(super) use crate::names::named;
 use pyo3::PyResult;
+use pyo3::exceptions::PyValueError;
 use quatfilt_core::window::Boundary;
 
 /// The value that a name stands for.

@@ -1,7 +1,7 @@
 //! Principal geodesic analysis.
 
 use crate::array::{by_dtype, clip, elements, input, output, run_interruptible};
-use crate::names::named;
+use crate::filters::names::named;
 use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
