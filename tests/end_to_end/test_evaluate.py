@@ -48,8 +48,15 @@ def test_a_table_is_written(verb, says, row, tmp_path, capsys, monkeypatch):
     assert any(line.strip().startswith(row) for line in lines)
 
 
-def test_figures_are_drawn_by_a_process_of_its_own(tmp_path):
-    words = ["evaluate", "bilateral-figs", "--seeds", "1"]
+@pytest.mark.parametrize(
+    ("verb", "says"),
+    [
+        ("bilateral-figs", "MSE of RightShoulder by passes"),
+        ("pga-figs", "Mean angle that k geodesics leave, degrees"),
+    ],
+)
+def test_figures_are_drawn_by_a_process_of_its_own(verb, says, tmp_path):
+    words = ["evaluate", verb, "--seeds", "1"]
     for more, folder in ((["-o", "results"], "results"), (["--json"], "docs/results")):
         done = subprocess.run(
             [sys.executable, "-m", "quatfilt", *words, *more],
@@ -64,11 +71,9 @@ def test_figures_are_drawn_by_a_process_of_its_own(tmp_path):
         assert done.returncode == 0, done.stderr
         assert done.stderr == ""
         if folder == "results":
-            assert check("bilateral-figs", done.stdout, tmp_path)[0].startswith(
-                "MSE of RightShoulder by passes"
-            )
+            assert check(verb, done.stdout, tmp_path)[0].startswith(says)
         else:
-            file = tmp_path / folder / "bilateral-figs.json"
+            file = tmp_path / folder / f"{verb}.json"
             assert json.loads(done.stdout) == json.loads(file.read_text(encoding="utf-8"))
 
 
@@ -81,7 +86,7 @@ def test_without_pywavelets_a_verb_says_what_to_install(verb, tmp_path, capsys, 
     assert not any(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("verb", ["nlpm-table1", "bilateral-figs", "smooth-goal"])
+@pytest.mark.parametrize("verb", ["nlpm-table1", "bilateral-figs", "pga-figs", "smooth-goal"])
 @pytest.mark.parametrize(
     ("words", "message"),
     [

@@ -22,6 +22,7 @@ from quatfilt.cli.demo import demo
 from quatfilt.cli.denoise import denoise
 from quatfilt.cli.evaluate import evaluate
 from quatfilt.cli.info import info
+from quatfilt.cli.pga import pga
 
 app = typer.Typer(
     name="quatfilt",
@@ -35,6 +36,7 @@ app.command(epilog=_steps.explained())(denoise)
 app.command(epilog=_steps.explained())(batch)
 app.command()(info)
 app.command()(compare)
+app.command()(pga)
 app.command()(demo)
 app.add_typer(database)
 app.add_typer(evaluate)
