@@ -101,7 +101,7 @@ fn kinks(samples: &Samples, plane: [[f64; 3]; 2], interrupt: &Interrupt) -> Resu
         let mut kinks = Vec::with_capacity(w.len());
         for i in 0..w.len() {
             let u = plane.map(|axis| dot([x[i], y[i], z[i]], axis));
-            if u != [0.0; 2] {
+            if (u[0] != 0.0) | (u[1] != 0.0) {
                 // The angle of the line through `u`: that of `u` or `−u`.
                 let (up, right) = if u[1] < 0.0 { (-u[1], -u[0]) } else { (u[1], u[0]) };
                 let angle = Real::atan2_nonnegative(up, right);

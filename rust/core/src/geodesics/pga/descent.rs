@@ -59,7 +59,7 @@ pub(super) fn descent(
         let mut step = newton_step(&here);
         let length = size(step);
         // A length that is not a number ends it too.
-        if !(length >= SHORTEST) {
+        if length.is_nan() || length < SHORTEST {
             break;
         }
         let mut moved = None;

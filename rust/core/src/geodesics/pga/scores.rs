@@ -140,10 +140,10 @@ pub fn geodesic_product<T: Real>(
                     }
                     turn(&mut q, geodesics.axis(component, joints, joint), &angles);
                 }
-                for c in 0..count {
+                let [w, x, y, z] = &q;
+                for (c, (((w, x), y), z)) in w.iter().zip(x).zip(y).zip(z).enumerate().take(count) {
                     let at = ((first + c) * joints + joint) * 4;
-                    out[at..at + 4]
-                        .copy_from_slice(&upper([q[0][c], q[1][c], q[2][c], q[3][c]]).map(T::from_f64));
+                    out[at..at + 4].copy_from_slice(&upper([*w, *x, *y, *z]).map(T::from_f64));
                 }
             }
         }
