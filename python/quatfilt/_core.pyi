@@ -10,6 +10,9 @@ __all__ = [
     "PoseStream",
     "bilateral",
     "bilateral_stream",
+    "body_geodesics",
+    "body_product",
+    "body_scores",
     "butterworth",
     "conjugate",
     "continuous",
@@ -292,6 +295,13 @@ def read_bvh(data: bytes, /) -> tuple[list[_Joint], tuple[float, str], NDArray[n
 def write_bvh(
     joints: list[_Joint], frame_time: tuple[float, str], values: NDArray[np.float64], /
 ) -> bytes: ...
+
+# geodesics/body
+def body_geodesics(
+    q: Array, means: Array, components: int, most: int, objective: str, tolerance: float, /
+) -> tuple[Array, Array, Array]: ...
+def body_product(scores: Array, means: Array, directions: Array, /) -> Array: ...
+def body_scores(q: Array, means: Array, directions: Array, /) -> Array: ...
 
 # geodesics/pga
 def geodesic_centre(q: Array, /) -> tuple[Array, Array, Mask]: ...

@@ -27,6 +27,7 @@ from quatfilt._reference.filters.smooth.body import smooth_body
 from quatfilt._reference.filters.smooth.patches import smooth_patches
 from quatfilt._reference.filters.smooth.smooth import smooth
 from quatfilt._reference.filters.weighted_moving_mean import weighted_moving_mean
+from quatfilt._reference.geodesics.body.body import body_geodesics, body_product, body_scores
 from quatfilt._reference.geodesics.pga.centre import geodesic_centre
 from quatfilt._reference.geodesics.pga.pga import geodesic_product, geodesic_scores, principal_geodesics
 from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
@@ -50,6 +51,9 @@ from quatfilt._reference.rotations.resample import slerp
 
 __all__ = [
     "bilateral",
+    "body_geodesics",
+    "body_product",
+    "body_scores",
     "butterworth",
     "conjugate",
     "continuous",

@@ -62,6 +62,8 @@ mod _core {
     #[pymodule_export]
     use super::formats::bvh::{read_bvh, write_bvh};
     #[pymodule_export]
+    use super::geodesics::body::{body_geodesics, body_product, body_scores};
+    #[pymodule_export]
     use super::geodesics::pga::{geodesic_centre, geodesic_product, geodesic_scores, principal_geodesics};
     #[pymodule_export]
     use super::motion::skeleton::{forward_kinematics, forward_kinematics_moving};

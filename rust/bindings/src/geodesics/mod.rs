@@ -1,3 +1,4 @@
 //! Analysis by geodesics.
 
+pub(crate) mod body;
 pub(crate) mod pga;

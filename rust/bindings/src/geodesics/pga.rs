@@ -49,17 +49,21 @@ pub(crate) fn principal_geodesics(
     objective: &str,
     tolerance: f64,
 ) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
-    let objective = named(
+    let params = Params { components, most, objective: objective_named(objective)?, tolerance };
+    by_dtype!(q, T => fitted::<T>(py, q, means, params))
+}
+
+/// The objective of a name.
+pub(super) fn objective_named(name: &str) -> PyResult<Objective> {
+    named(
         "objective",
-        objective,
+        name,
         &[
             ("geodesic", Objective::Geodesic),
             ("squared", Objective::Squared),
             ("chordal", Objective::Chordal),
         ],
-    )?;
-    let params = Params { components, most, objective, tolerance };
-    by_dtype!(q, T => fitted::<T>(py, q, means, params))
+    )
 }
 
 fn fitted<T: Real + Element>(
@@ -90,7 +94,7 @@ fn fitted<T: Real + Element>(
 }
 
 /// An array of numbers, rounded to its dtype.
-fn array<T: Real + Element>(
+pub(super) fn array<T: Real + Element>(
     py: Python<'_>,
     shape: &[usize],
     numbers: impl Iterator<Item = f64>,

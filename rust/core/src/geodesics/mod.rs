@@ -1,3 +1,4 @@
 //! Analysis of rotations by geodesics.
 
+pub mod body;
 pub mod pga;

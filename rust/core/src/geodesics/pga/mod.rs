@@ -149,6 +149,19 @@ impl Joint {
     }
 }
 
+/// Direction of the geodesic that is nearest to the samples of one joint, and the objectives on the way; `before` is the last
+/// one.
+pub(super) fn nearest_of_joint(
+    samples: &[[f64; 4]],
+    before: Option<[f64; 3]>,
+    objective: Objective,
+    interrupt: &Interrupt,
+) -> Result<([f64; 3], Vec<f64>), Error> {
+    let joint = Joint { left: Samples::filled(samples.len(), |i| samples[i]), before };
+    let found = joint.nearest(objective, interrupt)?;
+    Ok((found.direction, found.descent))
+}
+
 /// Whether the first sample whose parameter along a geodesic is great enough has a negative one.
 fn decides_against(samples: &Samples, v: [f64; 3], interrupt: &Interrupt) -> Result<bool, Error> {
     let parts = samples.map(4, interrupt, |part, _| {

@@ -24,7 +24,7 @@ pub(super) struct Samples {
 pub(super) type Quad<'a> = [&'a [f64]; 4];
 
 impl Samples {
-    fn filled(count: usize, at: impl Fn(usize) -> [f64; 4]) -> Self {
+    pub(super) fn filled(count: usize, at: impl Fn(usize) -> [f64; 4]) -> Self {
         let mut planes = Planes::new(4, count.next_multiple_of(LANES));
         let [w, x, y, z] = planes.rows_mut::<4>(0);
         for i in 0..count {
