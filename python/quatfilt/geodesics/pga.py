@@ -17,22 +17,31 @@ OBJECTIVES: tuple[Objective, ...] = ("geodesic", "squared", "chordal")
 MOST_COMPONENTS = 64
 """Geodesics of each joint where their number is not given; after a dozen, roundings are left."""
 
+MOST_BODY_COMPONENTS = 12
+"""Geodesics of whole poses for each joint where their number is not given: four for each degree of freedom."""
+
 
 class PrincipalGeodesicAnalysis(_estimator.Estimator):
     """Describe rotations by a few angles: parameters of geodesics through their mean, one after the other.
 
     With `x` the rotations seen from the mean, the first geodesic ``c_v(s) = exp(s·v)`` is the one that lies nearest to all
     samples. The next is fitted to what is left, ``π_v(x)⁻¹ x``, where `π_v` is the nearest point of the geodesic, and
-    so on: ``q = mean · c_{v_1}(s_1) · c_{v_2}(s_2) · …``. Nothing is linearised. Each joint is analysed by itself.
+    so on: ``q = mean · c_{v_1}(s_1) · c_{v_2}(s_2) · …``. Nothing is linearised. Each joint is analysed by itself, or with
+    ``body=True`` all joints together: then a geodesic turns each joint about an axis and at a speed of its own, and a
+    pose has one parameter on it.
 
     Parameters
     ----------
     n_components : int or None, default None
-        How many geodesics; None for as many as it takes until each joint's `R_k` is at most `tol`, and at most 64.
+        How many geodesics; None for as many as it takes until each joint's `R_k` is at most `tol`, and at most 64; with
+        `body` until the body's is, and at most 12 for each joint.
     objective : {"geodesic", "squared", "chordal"}, default "geodesic"
         What the direction of a geodesic minimises: the mean of the distance `d`, of ``d²``, or of ``1 − cos d``, where `d`
         is the distance on S³, half the rotation angle. ``"geodesic"`` is the paper's eq. (9); its equations (11) and
-        (13) belong to ``"chordal"``.
+        (13) belong to ``"chordal"``. With `body` the distance of poses is ``d = √(Σ_j d_j²)`` over the joints, and
+        ``"chordal"`` the mean of ``Σ_j (1 − cos d_j)``.
+    body : bool, default False
+        Whether geodesics are those of whole poses.
     tol : float, radians of rotation, default 1e-9
         The mean angle that may be left where `n_components` is None.
     scalar_first : bool, default True
@@ -43,11 +52,12 @@ class PrincipalGeodesicAnalysis(_estimator.Estimator):
     mean_ : ndarray, shape (joints, 4)
         Karcher means; NaN for a joint without samples.
     components_ : ndarray, shape (k, joints, 3)
-        Unit axes `v_k`, in the frame of the mean. The first sample whose parameter is at least 0.7 of the greatest has a
+        Unit axes `v_k`, in the frame of the mean; with `body` each `v_k` is a unit vector over all joints. The first sample whose parameter is at least 0.7 of the greatest has a
         positive one. ``(1, 0, 0)`` where nothing was left to be fitted.
-    residuals_ : ndarray, shape (k, joints), radians of rotation
-        `R_k`: the mean angle that the first k geodesics leave.
-    descent_ : ndarray, shape (k, joints, steps)
+    residuals_ : ndarray, shape (k, joints) or with `body` (k,), radians of rotation
+        `R_k`: the mean angle that the first k geodesics leave; with `body` the mean distance ``2 √(Σ_j d_j²)``, which is
+        ``√joints`` times the root mean square angle of a pose.
+    descent_ : ndarray, shape (k, joints, steps) or with `body` (k, steps)
         The objective on the way to each axis, which never rises; NaN after the last step.
 
     Attributes have no joints axis where `fit` got one series ``(frames, 4)``.
@@ -66,7 +76,8 @@ class PrincipalGeodesicAnalysis(_estimator.Estimator):
     -----
     `fit` finds the lowest objective: from the second geodesic on by branch and bound among the samples' directions, where
     the mean distance has its minima; the first by Newton's method from many starts. Cost: some 50 passes over the samples
-    for each geodesic.
+    for each geodesic. With `body` it descends from the tangent principal axes, which are never better, to the lowest
+    minimum that they lead to: some 30 passes for each geodesic.
 
     Missing samples, NaN or four zeros, are no part of the fit, and NaN in what comes out.
 
@@ -100,11 +111,13 @@ class PrincipalGeodesicAnalysis(_estimator.Estimator):
         n_components: int | None = None,
         *,
         objective: Objective = "geodesic",
+        body: bool = False,
         tol: float = 1e-9,
         scalar_first: bool = True,
     ) -> None:
         self.n_components = n_components
         self.objective = objective
+        self.body = body
         self.tol = tol
         self.scalar_first = scalar_first
 
@@ -137,14 +150,14 @@ class PrincipalGeodesicAnalysis(_estimator.Estimator):
         means, radius, unique = ops().geodesic_centre(rotations)
         _validation.centred(radius, unique)
         means = means.astype(rotations.dtype)
-        directions, residuals, descents = ops().principal_geodesics(
-            rotations, means, components, MOST_COMPONENTS, objective, tolerance
-        )
         joints = shape[1:-1]
+        most = MOST_BODY_COMPONENTS * len(means) if self.body else MOST_COMPONENTS
+        analysed = ops().body_geodesics if self.body else ops().principal_geodesics
+        directions, residuals, descents = analysed(rotations, means, components, most, objective, tolerance)
         self.mean_ = _validation.scalar_order(means, scalar_first=self.scalar_first).reshape(*joints, 4)
         self.components_ = directions.reshape(len(directions), *joints, 3)
-        self.residuals_ = residuals.reshape(len(residuals), *joints)
-        self.descent_ = descents.reshape(*descents.shape[:1], *joints, descents.shape[-1])
+        self.residuals_ = residuals.reshape(len(residuals), *self._apart(joints))
+        self.descent_ = descents.reshape(len(descents), *self._apart(joints), descents.shape[-1])
         return self
 
     def transform(self, q: ArrayLike) -> Array:
@@ -158,7 +171,8 @@ class PrincipalGeodesicAnalysis(_estimator.Estimator):
         Returns
         -------
         ndarray, shape (frames, joints, k) or (frames, k), radians of rotation
-            Angles in [−π, π]; NaN for missing samples.
+            Angles in [−π, π]; NaN for missing samples. With `body` one for each pose, in units of the length of all joints'
+            rotation vectors together; NaN for a pose without samples.
 
         Raises
         ------
@@ -166,7 +180,9 @@ class PrincipalGeodesicAnalysis(_estimator.Estimator):
             If `q` has another shape or type than stated, and before `fit`; the message names it.
         """
         rotations, shape = self._clip_as_fitted(q)
-        return self._scores(rotations).reshape(*shape[:-1], len(self.components_))
+        return self._scores(rotations).reshape(
+            len(rotations), *self._apart(shape[1:-1]), len(self.components_)
+        )
 
     def fit_transform(self, q: ArrayLike, y: None = None) -> Array:
         """Fit the geodesics, and return the parameters along them.
@@ -196,7 +212,7 @@ class PrincipalGeodesicAnalysis(_estimator.Estimator):
         Parameters
         ----------
         scores : array_like, shape (frames, joints, k) or (frames, k), radians of rotation
-            Parameters along the first k geodesics; k may be less than was fitted.
+            As `transform` gives them: parameters along the first k geodesics; k may be less than was fitted.
 
         Returns
         -------
@@ -209,8 +225,9 @@ class PrincipalGeodesicAnalysis(_estimator.Estimator):
             If `scores` has another shape or type than stated, and before `fit`; the message names it.
         """
         joints = self._fitted().shape[:-1]
-        array = _validation.scores(scores, joints, len(self.components_))
-        q = self._rotations(array.reshape(len(array), *(joints or (1,)), array.shape[-1]))
+        array = _validation.scores(scores, self._apart(joints), len(self.components_))
+        shape = array.shape if self.body else (len(array), *(joints or (1,)), array.shape[-1])
+        q = self._rotations(np.ascontiguousarray(array.reshape(shape)))
         return _validation.scalar_order(q.reshape(len(array), *joints, 4), scalar_first=self.scalar_first)
 
     def reconstruction_error(self, q: ArrayLike, k: int | None = None) -> Array:
@@ -263,12 +280,18 @@ class PrincipalGeodesicAnalysis(_estimator.Estimator):
             np.require(axes, like.dtype, ("C_CONTIGUOUS", "ALIGNED")),
         )
 
+    def _apart(self, joints: tuple[int, ...]) -> tuple[int, ...]:
+        """Return the shape of what joints have apart from each other: nothing if the body is analysed as a whole."""
+        return () if self.body else joints
+
     def _scores(self, rotations: Array) -> Array:
-        return cast("Array", ops().geodesic_scores(rotations, *self._model(rotations)))
+        scores = ops().body_scores if self.body else ops().geodesic_scores
+        return cast("Array", scores(rotations, *self._model(rotations)))
 
     def _rotations(self, scores: Array) -> Array:
         means, axes = self._model(scores)
-        return cast("Array", ops().geodesic_product(scores, means, axes[: scores.shape[-1]]))
+        product = ops().body_product if self.body else ops().geodesic_product
+        return cast("Array", product(scores, means, axes[: scores.shape[-1]]))
 
     def _fitted(self) -> Array:
         if not self.__sklearn_is_fitted__():
@@ -276,4 +299,4 @@ class PrincipalGeodesicAnalysis(_estimator.Estimator):
         return self.mean_
 
 
-__all__ = ["MOST_COMPONENTS", "OBJECTIVES", "Objective", "PrincipalGeodesicAnalysis"]
+__all__ = ["MOST_BODY_COMPONENTS", "MOST_COMPONENTS", "OBJECTIVES", "Objective", "PrincipalGeodesicAnalysis"]
