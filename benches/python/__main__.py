@@ -7,7 +7,7 @@ from pathlib import Path
 from conditions import conditions
 from report import Results, aims_table, show, write
 
-ROOMS = ("rotations", "filters", "classical", "noise", "geodesics", "formats")
+ROOMS = ("rotations", "filters", "classical", "noise", "geodesics", "poses", "formats")
 
 
 def main() -> None:

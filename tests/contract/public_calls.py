@@ -90,6 +90,9 @@ def analysed(q):
     pga = qf.PrincipalGeodesicAnalysis(3).fit(near)
     scores = pga.transform(near)
     found = [pga.mean_, pga.components_, pga.residuals_, scores, pga.inverse_transform(scores)]
+    body = qf.PrincipalGeodesicAnalysis(2, body=True).fit(near[:1500])
+    scores = body.transform(near)
+    found += [body.components_, body.residuals_, scores, body.inverse_transform(scores)]
     return np.concatenate([array.ravel() for array in [*found, pga.reconstruction_error(near, 1)]])
 
 

@@ -69,11 +69,17 @@ MESSAGES = {
     "scores: expected angles of at most 100000 rad, got 1e+06": (
         lambda: PGA(2).fit(clip()).inverse_transform(np.full((20, 3, 2), 1e6))
     ),
+    "scores: expected shape (frames, at most 2) as in fit, got (20, 3, 3)": (
+        lambda: PGA(2, body=True).fit(clip()).inverse_transform(np.zeros((20, 3, 3)))
+    ),
+    "scores: expected shape (frames, at most 2) as in fit, got (20, 3)": (
+        lambda: PGA(2, body=True).fit(clip()[:, 0]).inverse_transform(np.zeros((20, 3)))
+    ),
     "k: expected an integer of at least 0 and at most 2, got 3": (
         lambda: PGA(2).fit(clip()).reconstruction_error(clip(), 3)
     ),
     "PrincipalGeodesicAnalysis: expected a call of fit before, got none": lambda: PGA().transform(clip()),
-    "set_params: expected names among n_components, objective, tol, scalar_first, got 'k'": (
+    "set_params: expected names among n_components, objective, body, tol, scalar_first, got 'k'": (
         lambda: PGA().set_params(k=3)
     ),
 }
@@ -87,10 +93,16 @@ def test_messages(message):
 
 def test_parameters_are_kept_as_they_came():
     pga = PGA(2, tol=1)
-    assert pga.get_params() == {"n_components": 2, "objective": "geodesic", "tol": 1, "scalar_first": True}
+    assert pga.get_params() == {
+        "n_components": 2,
+        "objective": "geodesic",
+        "body": False,
+        "tol": 1,
+        "scalar_first": True,
+    }
     assert pga.set_params(n_components=None) is pga
     assert repr(pga) == (
-        "PrincipalGeodesicAnalysis(n_components=None, objective='geodesic', tol=1, scalar_first=True)"
+        "PrincipalGeodesicAnalysis(n_components=None, objective='geodesic', body=False, tol=1, scalar_first=True)"
     )
 
 

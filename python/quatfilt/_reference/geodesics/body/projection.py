@@ -23,7 +23,7 @@ LOWER = 1e-12
 
 def furthest(v: Parts) -> float:
     """Greatest parameter: the fastest joint has turned by half a turn, `π/2` on S³, and would turn back beyond it."""
-    return float(np.pi / 2 / v.lengths.max())
+    return float(np.pi / 2 / v.lengths.max(initial=np.finfo(np.float64).tiny))
 
 
 def nearest_point(x: Reals, v: Parts, objective: str, guess: Reals | None = None) -> Reals:

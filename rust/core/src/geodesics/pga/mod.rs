@@ -158,7 +158,7 @@ pub(super) fn nearest_of_joint(
     interrupt: &Interrupt,
 ) -> Result<([f64; 3], Vec<f64>), Error> {
     let joint = Joint { left: Samples::filled(samples.len(), |i| samples[i]), before };
-    let found = joint.nearest(objective, interrupt)?;
+    let found = joint.nearest(joint.reach(None, interrupt)?, objective, interrupt)?;
     Ok((found.direction, found.descent))
 }
 
