@@ -24,10 +24,8 @@ fn body<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
     let q = clips::rotations::<T>(frames, joints, 1)?;
     let clip = ClipView::new(&q, frames, joints)?;
     let interrupt = Interrupt::new();
-    let means: Vec<T> = geodesic_centre(clip, &interrupt)?
-        .iter()
-        .flat_map(|centre| centre.mean.map(T::from_f64))
-        .collect();
+    let means: Vec<T> =
+        geodesic_centre(clip, &interrupt)?.iter().flat_map(|centre| centre.mean.map(T::from_f64)).collect();
     let params =
         Params { components: COMPONENTS, most: COMPONENTS, objective: Objective::Geodesic, tolerance: 0.0 };
     let found = body_geodesics(clip, &means, params, &interrupt)?;

@@ -39,15 +39,15 @@ def nearest_geodesic(x: Reals, objective: str) -> tuple[Reals, list[float]]:
 def starts(x: Reals) -> list[Reals]:
     """Directions that the logarithms `y` of the poses suggest, `(joints, 3)` each.
 
-    The first three eigenvectors of `Σ y yᵀ`, which are tangent principal component analysis, and the first one of
-    `Σ y yᵀ/|y|²`, over the subset, where all poses count alike.
+    The first three eigenvectors of `Σ y yᵀ`, which are tangent principal component analysis, and of
+    `Σ y yᵀ/|y|²` over the subset, where all poses count alike.
     """
     shape = x.shape[1:-1]
     y = logarithms(x).reshape(len(x), -1)
     few = y[:: -(-len(y) // SUBSET)]
     lengths = norm(few)[:, None]
     alike = few / np.where(lengths > 0, lengths, 1)
-    axes = [*axes_of(y)[:3], axes_of(alike)[0]]
+    axes = [*axes_of(y)[:3], *axes_of(alike)[:3]]
     return [axis.reshape(*shape, 3) for axis in axes]
 
 
