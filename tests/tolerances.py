@@ -37,6 +37,8 @@ their ratio to what is left."""
 
 DIRECTION = 1e-9
 """Directions of geodesics in float64: what the issue of principal geodesic analysis asks of their convergence."""
+MOMENTS = 1e-11
+"""Sums of eigenvalues of moments of up to 2000 unit quaternions, in float64: roundings of the sums, and of the largest eigenvalue."""
 
 SHORTER_THAN_MASK = 25
 """Frames of such clips, at most: the reach of the mask."""

@@ -28,7 +28,10 @@ from quatfilt.filters.stream.one_euro import OneEuroStream
 from quatfilt.filters.wavelet import wavelet
 from quatfilt.filters.weighted_moving_mean import weighted_moving_mean
 from quatfilt.formats.files import read_motion, write_motion
+from quatfilt.geodesics.compress import compress
+from quatfilt.geodesics.compressed import Compressed
 from quatfilt.geodesics.pga import PrincipalGeodesicAnalysis
+from quatfilt.geodesics.segment import segment
 from quatfilt.motion import metrics
 from quatfilt.motion.motion import Motion
 from quatfilt.motion.report import Report, report
@@ -51,6 +54,7 @@ if _is_debug_build():
 
 __all__ = [
     "BilateralStream",
+    "Compressed",
     "EndSite",
     "FileAccessError",
     "FileFormatError",
@@ -69,6 +73,7 @@ __all__ = [
     "add_impulse_noise",
     "bilateral",
     "butterworth",
+    "compress",
     "conjugate",
     "continuous",
     "denoise",
@@ -95,6 +100,7 @@ __all__ = [
     "report",
     "resample",
     "savgol",
+    "segment",
     "set_num_threads",
     "simd_level",
     "slerp",

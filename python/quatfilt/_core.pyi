@@ -14,9 +14,11 @@ __all__ = [
     "body_product",
     "body_scores",
     "butterworth",
+    "compress",
     "conjugate",
     "continuous",
     "continuous_euler",
+    "decompress",
     "develop",
     "exp",
     "fill_gaps",
@@ -48,6 +50,7 @@ __all__ = [
     "orientation_filter",
     "pose_features",
     "predict_pose",
+    "principal_frames",
     "principal_geodesics",
     "read_amc",
     "read_asf",
@@ -55,6 +58,7 @@ __all__ = [
     "savgol",
     "savgol_derivative",
     "scan",
+    "segment",
     "set_num_threads",
     "simd_level",
     "slerp",
@@ -303,6 +307,13 @@ def body_geodesics(
 def body_product(scores: Array, means: Array, directions: Array, /) -> Array: ...
 def body_scores(q: Array, means: Array, directions: Array, /) -> Array: ...
 
+# geodesics/compress
+def compress(
+    q: Array, frames: NDArray[np.float64], tolerance: NDArray[np.float64], quantised: bool, /
+) -> tuple[bytes, float]: ...
+def decompress(data: bytes, frames: int, joints: int, double: bool, /) -> Array: ...
+def principal_frames(q: Array, /) -> NDArray[np.float64]: ...
+
 # geodesics/pga
 def geodesic_centre(q: Array, /) -> tuple[Array, Array, Mask]: ...
 def geodesic_product(scores: Array, means: Array, directions: Array, /) -> Array: ...
@@ -310,6 +321,11 @@ def geodesic_scores(q: Array, means: Array, directions: Array, /) -> Array: ...
 def principal_geodesics(
     q: Array, means: Array, components: int, most: int, objective: str, tolerance: float, /
 ) -> tuple[Array, Array, Array]: ...
+
+# geodesics/segment
+def segment(
+    q: Array, components: int, window: int, min_length: int, lag: int, threshold: float, /
+) -> tuple[NDArray[np.intp], NDArray[np.float64], NDArray[np.float64]]: ...
 
 # motion/skeleton
 def forward_kinematics(

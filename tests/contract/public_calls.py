@@ -4,6 +4,7 @@ import numpy as np
 import quatfilt as qf
 
 NOT_KERNELS = {
+    "Compressed": "a class",
     "EndSite": "a part of a skeleton",
     "FileAccessError": "an error",
     "FileFormatError": "an error",
@@ -113,6 +114,7 @@ CALLS = {
     "add_impulse_noise": lambda a, _b, _v: qf.add_impulse_noise(a, probability=0.1, rng=1),
     "bilateral": lambda a, _b, _v: qf.bilateral(with_gaps(a), sigma_angle=1.0, iterations=2),
     "butterworth": lambda a, _b, _v: qf.butterworth(with_gaps(a), cutoff=0.1),
+    "compress": lambda a, _b, _v: qf.compress(with_gaps(a), tolerance=0.01).decompress(),
     "conjugate": lambda a, _b, _v: qf.conjugate(six_times(a)),
     "continuous": lambda a, _b, _v: qf.continuous(with_gaps(a)),
     "denoise": lambda a, _b, _v: qf.denoise(with_gaps(a)),
@@ -136,6 +138,7 @@ CALLS = {
     "predict_pose": lambda a, _b, _v: predicted(a),
     "resample": lambda a, _b, _v: qf.resample(a, fps=30, new_fps=31.7),
     "savgol": lambda a, _b, _v: qf.savgol(with_gaps(a), window_length=11),
+    "segment": lambda a, _b, _v: qf.segment(with_gaps(a), window=20, min_length=5, threshold=0.5),
     "slerp": lambda a, _b, _v: qf.slerp(a, np.arange(FRAMES), np.linspace(0, FRAMES - 1, 10_001)),
     "smooth": lambda a, _b, _v: qf.smooth(with_gaps(a)),
     "wavelet": lambda a, _b, _v: qf.wavelet(with_gaps(a)),

@@ -28,8 +28,11 @@ from quatfilt._reference.filters.smooth.patches import smooth_patches
 from quatfilt._reference.filters.smooth.smooth import smooth
 from quatfilt._reference.filters.weighted_moving_mean import weighted_moving_mean
 from quatfilt._reference.geodesics.body.body import body_geodesics, body_product, body_scores
+from quatfilt._reference.geodesics.compress.compress import compress, decompress
+from quatfilt._reference.geodesics.compress.frames import principal_frames
 from quatfilt._reference.geodesics.pga.centre import geodesic_centre
 from quatfilt._reference.geodesics.pga.pga import geodesic_product, geodesic_scores, principal_geodesics
+from quatfilt._reference.geodesics.segment import segment
 from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
 from quatfilt._reference.noise.noise import noise_level
 from quatfilt._reference.reconstruction.features import pose_features
@@ -55,9 +58,11 @@ __all__ = [
     "body_product",
     "body_scores",
     "butterworth",
+    "compress",
     "conjugate",
     "continuous",
     "continuous_euler",
+    "decompress",
     "develop",
     "exp",
     "fill_gaps",
@@ -84,10 +89,12 @@ __all__ = [
     "orientation_filter",
     "pose_features",
     "predict_pose",
+    "principal_frames",
     "principal_geodesics",
     "savgol",
     "savgol_derivative",
     "scan",
+    "segment",
     "slerp",
     "smooth",
     "smooth_body",

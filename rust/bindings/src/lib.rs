@@ -64,7 +64,11 @@ mod _core {
     #[pymodule_export]
     use super::geodesics::body::{body_geodesics, body_product, body_scores};
     #[pymodule_export]
+    use super::geodesics::compress::{compress, decompress, principal_frames};
+    #[pymodule_export]
     use super::geodesics::pga::{geodesic_centre, geodesic_product, geodesic_scores, principal_geodesics};
+    #[pymodule_export]
+    use super::geodesics::segment::segment;
     #[pymodule_export]
     use super::motion::skeleton::{forward_kinematics, forward_kinematics_moving};
     #[pymodule_export]

@@ -9,6 +9,7 @@
 //!   [`elementary`] (vectorisable functions), [`simd`] (run-time dispatch), [`parallel`] (the thread pool);
 //! - [`rotations`]: algebra, continuity, resampling;
 //! - [`filters`]: filling of gaps;
+//! - [`geodesics`]: principal geodesics, and compression with them;
 //! - [`noise`]: the noise level;
 //! - [`geodesics`]: principal geodesic analysis;
 //! - [`motion`]: forward kinematics;

@@ -1,4 +1,6 @@
 //! Analysis by geodesics.
 
 pub(crate) mod body;
+pub(crate) mod compress;
 pub(crate) mod pga;
+pub(crate) mod segment;

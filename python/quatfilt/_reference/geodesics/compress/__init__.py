@@ -1,0 +1,1 @@
+"""Compression of rotations to a tolerance."""
