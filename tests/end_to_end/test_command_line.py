@@ -13,7 +13,7 @@ from commands import COMMAND, refused, run
 from quatfilt.cli import main
 from quatfilt.evaluation.synthetic import walk
 
-EVALUATIONS = ("nlpm-table1", "bilateral-figs", "smooth-goal")
+EVALUATIONS = ("nlpm-table1", "bilateral-figs", "smooth-goal", "compression")
 
 
 @pytest.fixture(scope="module", name="folder")
@@ -196,6 +196,7 @@ def test_demo_without_matplotlib_says_how_to_get_it(tmp_path):
         ["denoise"],
         ["info"],
         ["compare"],
+        ["segment"],
         ["demo"],
         ["evaluate"],
         *(["evaluate", verb] for verb in EVALUATIONS),

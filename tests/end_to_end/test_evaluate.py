@@ -77,6 +77,21 @@ def test_figures_are_drawn_by_a_process_of_its_own(verb, says, tmp_path):
             assert json.loads(done.stdout) == json.loads(file.read_text(encoding="utf-8"))
 
 
+@pytest.mark.usefixtures("one_second")
+def test_compression_is_measured(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["evaluate", "compression", "-o", "results"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "All clips together"
+    assert any(line.startswith("quatfilt.compress, 0.1°") for line in lines)
+    assert "`quatfilt evaluate compression`" in (tmp_path / "results" / "compression.md").read_text("utf-8")
+    numbers = json.loads((tmp_path / "results" / "compression.json").read_text("utf-8"))
+    assert main(["evaluate", "compression", "-o", "results", "--json"]) == 0
+    again = json.loads(capsys.readouterr().out)
+    assert again["ratios_by_tolerance_radians"] == numbers["ratios_by_tolerance_radians"]
+    assert (tmp_path / "results" / "compression.png").read_bytes().startswith(b"\x89PNG")
+
+
 @pytest.mark.parametrize("verb", ["nlpm-table1", "smooth-goal"])
 def test_without_pywavelets_a_verb_says_what_to_install(verb, tmp_path, capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "pywt", None)

@@ -23,6 +23,7 @@ from quatfilt.cli.denoise import denoise
 from quatfilt.cli.evaluate import evaluate
 from quatfilt.cli.info import info
 from quatfilt.cli.pga import pga
+from quatfilt.cli.segment import segment
 
 app = typer.Typer(
     name="quatfilt",
@@ -37,6 +38,7 @@ app.command(epilog=_steps.explained())(batch)
 app.command()(info)
 app.command()(compare)
 app.command()(pga)
+app.command()(segment)
 app.command()(demo)
 app.add_typer(database)
 app.add_typer(evaluate)

@@ -3,6 +3,7 @@
 import typer
 
 from quatfilt.cli.evaluate.bilateral_figs import bilateral_figs
+from quatfilt.cli.evaluate.compression import compression
 from quatfilt.cli.evaluate.nlpm_table1 import nlpm_table1
 from quatfilt.cli.evaluate.pga_figs import pga_figs
 from quatfilt.cli.evaluate.smooth_goal import smooth_goal
@@ -17,6 +18,7 @@ evaluate.command("nlpm-table1")(nlpm_table1)
 evaluate.command("bilateral-figs")(bilateral_figs)
 evaluate.command("pga-figs")(pga_figs)
 evaluate.command("smooth-goal")(smooth_goal)
+evaluate.command("compression")(compression)
 
 
 @evaluate.callback(invoke_without_command=True)
