@@ -96,6 +96,14 @@ def test_forged_files_are_refused_without_a_large_allocation(tmp_path, place, fo
     assert str(error.value).startswith(f"{path}: {reason}")
 
 
+def test_more_than_fits_into_memory_is_refused(tmp_path):
+    path = tmp_path / "clip.qfc"
+    small(10, 1).save(path)
+    path.write_bytes(forged(path.read_bytes(), 16, "<Q", 1 << 36))
+    with pytest.raises(MemoryError):
+        qf.Compressed.load(path).decompress()
+
+
 def test_a_forged_stream_is_some_clip(tmp_path):
     path = tmp_path / "clip.qfc"
     small(40, 2).save(path)

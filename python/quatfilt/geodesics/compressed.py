@@ -91,6 +91,11 @@ class Compressed:
         ndarray, shape (frames, joints, 4) or (frames, 4)
             Continuous in sign from the first frame on, which has the sign that it had; NaN where samples were missing.
 
+        Raises
+        ------
+        MemoryError
+            If they do not fit into memory.
+
         Examples
         --------
         >>> import numpy as np, quatfilt as qf
@@ -100,6 +105,7 @@ class Compressed:
         True
         """
         first = _validation.switch(scalar_first, "scalar_first")
+        np.empty((self.frames, self.joints, 4), self.dtype)  # a file may claim more than there is memory for
         double = self.dtype.itemsize == 8
         clip = ops().decompress(self.stream, self.frames, self.joints, double)
         return _validation.scalar_order(clip[:, 0] if self.single else clip, scalar_first=first)
