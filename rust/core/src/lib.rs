@@ -9,9 +9,8 @@
 //!   [`elementary`] (vectorisable functions), [`simd`] (run-time dispatch), [`parallel`] (the thread pool);
 //! - [`rotations`]: algebra, continuity, resampling;
 //! - [`filters`]: filling of gaps;
-//! - [`geodesics`]: principal geodesics, and compression with them;
 //! - [`noise`]: the noise level;
-//! - [`geodesics`]: principal geodesic analysis;
+//! - [`geodesics`]: principal geodesic analysis, compression and segmentation with geodesics;
 //! - [`motion`]: forward kinematics;
 //! - [`reconstruction`]: headings and features of a database of poses, local models.
 //!
