@@ -44,6 +44,7 @@ from quatfilt.rotations.continuity import continuous
 from quatfilt.rotations.mean import mean
 from quatfilt.rotations.quaternion import conjugate, exp, geodesic_distance, log, multiply, normalize
 from quatfilt.rotations.resample import resample, slerp
+from quatfilt.search.patch_neighbors import patch_neighbors
 
 if _is_debug_build():
     warnings.warn(
@@ -95,6 +96,7 @@ __all__ = [
     "normalize",
     "one_euro",
     "orientation_filter",
+    "patch_neighbors",
     "predict_pose",
     "read_motion",
     "report",

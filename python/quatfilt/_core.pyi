@@ -48,6 +48,7 @@ __all__ = [
     "one_euro",
     "one_euro_stream",
     "orientation_filter",
+    "patch_neighbors",
     "pose_features",
     "predict_pose",
     "principal_frames",
@@ -383,6 +384,18 @@ def scan(q: Array, /) -> tuple[int, float, int]: ...
 
 # rotations/resample
 def slerp(q: Array, times: NDArray[np.float64], new_times: NDArray[np.float64], /) -> Array: ...
+
+# search/patch_neighbors
+def patch_neighbors(
+    q: Array,
+    library: Array | None,
+    lengths: list[int],
+    patch_radius: int,
+    k: int,
+    exclusion: int,
+    weights: NDArray[np.float64],
+    /,
+) -> tuple[NDArray[np.int64], Array]: ...
 
 # threads
 def get_num_threads() -> int: ...

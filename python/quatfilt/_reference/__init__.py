@@ -51,6 +51,7 @@ from quatfilt._reference.rotations.quaternion import (
     scan,
 )
 from quatfilt._reference.rotations.resample import slerp
+from quatfilt._reference.search.patch_neighbors import patch_neighbors
 
 __all__ = [
     "bilateral",
@@ -87,6 +88,7 @@ __all__ = [
     "normalize",
     "one_euro",
     "orientation_filter",
+    "patch_neighbors",
     "pose_features",
     "predict_pose",
     "principal_frames",

@@ -10,6 +10,7 @@ from quatfilt._validation.frame_times import times, times_within
 from quatfilt._validation.geodesics import centred, scores
 from quatfilt._validation.graphs import graph
 from quatfilt._validation.joints import frequencies, per_joint
+from quatfilt._validation.libraries import library
 from quatfilt._validation.masks import mask
 from quatfilt._validation.numbers import integer, interval, number, odd
 from quatfilt._validation.poses import clip, pose
@@ -30,6 +31,7 @@ __all__ = [
     "interval",
     "joint_weights",
     "known",
+    "library",
     "mask",
     "number",
     "odd",

@@ -11,6 +11,7 @@ mod motion;
 mod noise;
 mod reconstruction;
 mod rotations;
+mod search;
 mod threads;
 
 #[pyo3::pymodule]
@@ -89,6 +90,8 @@ mod _core {
     use super::rotations::quaternion::{conjugate, exp, geodesic_distance, log, multiply, normalize, scan};
     #[pymodule_export]
     use super::rotations::resample::slerp;
+    #[pymodule_export]
+    use super::search::patch_neighbors::patch_neighbors;
     #[pymodule_export]
     use super::threads::{get_num_threads, is_debug_build, set_num_threads, simd_level};
 }

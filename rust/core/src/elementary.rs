@@ -13,8 +13,10 @@
 //! | quaternion logarithm | all, in ulp of its length | 4 | 3 |
 //! | quaternion exponential | angles up to π, in ulp of 1 | 4 | 4 |
 //! | rotation angle | all | 3 | 3 |
+//! | squared rotation angle of a squared chord | `[0, 2]` | 3 | 3 |
 //!
-//! Polynomials: Cephes (S. Moshier) for sine, cosine and arc tangent; Taylor of degree 13 and 7 for `exp`.
+//! Polynomials: Cephes (S. Moshier) for sine, cosine and arc tangent; Taylor of degree 13 and 7 for `exp`; Remez of degree
+//! 7 and 18, with the least relative error, for the squared angle.
 
 use crate::Real;
 
@@ -207,6 +209,34 @@ impl Real for f64 {
         let quadrant = if self > x.abs() { Self::HALF_PI - (octant - MORE_BITS) } else { octant };
         if x < 0.0 { Self::PI - (quadrant - 2.0 * MORE_BITS) } else { quadrant }
     }
+
+    #[inline(always)]
+    fn square_of_angle(self) -> Self {
+        self * polynomial(
+            self,
+            [
+                1.634_207_584_233_487_094e-10,
+                -2.428_667_857_255_754_8e-9,
+                1.718_017_590_149_359_297e-8,
+                -7.489_597_056_637_154_333e-8,
+                2.248_961_428_445_748_711e-7,
+                -4.866_350_522_236_849_275e-7,
+                7.936_448_817_405_813_969e-7,
+                -9.461_696_276_512_179_397e-7,
+                9.958_863_745_637_460_471e-7,
+                -2.075_331_736_369_140_281e-7,
+                2.374_582_631_960_588_623e-6,
+                9.575_853_508_751_344_025e-6,
+                4.761_094_088_146_377_744e-5,
+                2.404_922_692_763_814_253e-4,
+                1.269_842_336_346_576_644e-3,
+                7.142_857_056_010_945_4e-3,
+                4.444_444_444_817_375_925e-2,
+                3.333_333_333_332_698_983e-1,
+                4.0,
+            ],
+        )
+    }
 }
 
 impl Real for f32 {
@@ -272,5 +302,22 @@ impl Real for f32 {
         let octant = far * std::f32::consts::FRAC_PI_4 + (a + tail);
         let quadrant = if self > x.abs() { Self::HALF_PI - octant } else { octant };
         if x < 0.0 { Self::PI - quadrant } else { quadrant }
+    }
+
+    #[inline(always)]
+    fn square_of_angle(self) -> Self {
+        self * polynomial(
+            self,
+            [
+                8.014_513e-5,
+                -2.744_948_5e-4,
+                8.895_132_5e-4,
+                5.901_734e-4,
+                7.517_154_8e-3,
+                4.434_507e-2,
+                3.333_432_7e-1,
+                3.999_999_8,
+            ],
+        )
     }
 }

@@ -8,6 +8,7 @@
 //! - foundation: [`error`], [`real`] (float32 and float64), [`clip`] (borrowed views and aligned planes),
 //!   [`elementary`] (vectorisable functions), [`simd`] (run-time dispatch), [`parallel`] (the thread pool);
 //! - [`rotations`]: algebra, continuity, resampling;
+//! - [`search`]: the most similar patches;
 //! - [`filters`]: filling of gaps;
 //! - [`noise`]: the noise level;
 //! - [`geodesics`]: principal geodesic analysis, compression and segmentation with geodesics;
@@ -31,6 +32,7 @@ pub mod parallel;
 pub mod real;
 pub mod reconstruction;
 pub mod rotations;
+pub mod search;
 pub mod simd;
 pub mod window;
 

@@ -83,6 +83,10 @@ pub trait Real:
     /// The angle of the point `(x, self)` for `self ≥ 0`, in `[0, π]`; 0 at the origin.
     #[must_use]
     fn atan2_nonnegative(self, x: Self) -> Self;
+    /// The squared angle `θ²` of a rotation whose unit quaternion is the chord `√self = 2 sin(θ/4)` away from 1, for
+    /// `self` in `[0, 2]`: `(4 asin(√self / 2))²`, which has no root in it.
+    #[must_use]
+    fn square_of_angle(self) -> Self;
 
     /// The smaller of two numbers; `other` if `self` is NaN.
     #[inline(always)]

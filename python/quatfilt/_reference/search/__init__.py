@@ -1,0 +1,1 @@
+"""Search for similar patches of motions."""

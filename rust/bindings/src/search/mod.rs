@@ -1,0 +1,3 @@
+//! Search for similar patches.
+
+pub(crate) mod patch_neighbors;

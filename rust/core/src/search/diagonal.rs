@@ -1,0 +1,83 @@
+//! Distances of the patches of one diagonal.
+
+use super::features::Features;
+use super::kernels;
+use crate::Real;
+use std::ops::Range;
+
+/// What a patch is and how two are compared: by `√(Σ factor·square / Σ unit)` over offsets and joints, each term as far as
+/// both samples count.
+#[derive(Debug)]
+pub(crate) struct Measure<T> {
+    /// Frames of a patch before its middle.
+    pub(crate) before: usize,
+    /// Frames of a patch after its middle.
+    pub(crate) after: usize,
+    /// The joints that are compared.
+    pub(crate) joints: Range<usize>,
+    /// What a squared difference counts, per joint.
+    pub(crate) factors: Vec<T>,
+    /// What a pair of samples counts in the divisor, per joint.
+    pub(crate) units: Vec<T>,
+    /// Whether there is a divisor.
+    pub(crate) averaged: bool,
+}
+
+impl<T: Real> Measure<T> {
+    /// Frames of a patch.
+    pub(crate) fn window(&self) -> usize {
+        self.before + self.after + 1
+    }
+
+    /// One over the divisor of complete patches.
+    fn scale(&self) -> T {
+        if !self.averaged {
+            return T::ONE;
+        }
+        let units: f64 = self.units[self.joints.clone()].iter().map(|unit| unit.to_f64()).sum();
+        T::from_f64(1.0 / (units * self.window() as f64))
+    }
+}
+
+/// Memory that goes from diagonal to diagonal.
+#[derive(Debug, Default)]
+pub(crate) struct Diagonal<T> {
+    squares: Vec<T>,
+    shares: Vec<T>,
+    totals: Vec<T>,
+    spare: Vec<T>,
+}
+
+impl<T: Real> Diagonal<T> {
+    /// Distances of the patches whose middles stand at the columns `at[0] + i` of `a` and `at[1] + i` of `b`, into `out`;
+    /// infinite where no two samples can be compared.
+    ///
+    /// A distance depends on its two patches alone, to the last bit, and not on which of them is `a`.
+    pub(crate) fn measure(
+        &mut self,
+        measure: &Measure<T>,
+        a: &Features<'_, T>,
+        b: &Features<'_, T>,
+        at: [usize; 2],
+        out: &mut [T],
+    ) {
+        let window = measure.window();
+        let span = out.len() + window - 1;
+        let at = at.map(|at| at - measure.before);
+        let (joints, factors) = (measure.joints.clone(), &measure.factors[..]);
+        let Self { squares, shares, totals, spare } = self;
+        squares.resize(span, T::ZERO);
+        if a.shares.is_some() {
+            shares.resize(span, T::ZERO);
+            totals.resize(out.len(), T::ZERO);
+            kernels::shared_frame_distances(squares, shares, a, b, at, joints, factors, &measure.units);
+            kernels::sliding_sums(squares, spare, window, out);
+            kernels::sliding_sums(shares, spare, window, totals);
+            kernels::shared_roots(out, totals, measure.averaged);
+        } else {
+            kernels::frame_distances(squares, a, b, at, joints, factors);
+            kernels::sliding_sums(squares, spare, window, out);
+            kernels::roots(out, measure.scale());
+        }
+    }
+}

@@ -1,0 +1,219 @@
+//! The vectorised loops: maps over the pairs of a diagonal.
+
+use super::features::{Features, Kind, quaternion};
+use crate::Real;
+use crate::simd::multiversion;
+use std::ops::Range;
+
+/// Squared distance of two points.
+#[inline(always)]
+fn chord<T: Real>(a: [T; 4], b: [T; 4]) -> T {
+    let d = [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]];
+    (d[0] * d[0] + d[1] * d[1]) + (d[2] * d[2] + d[3] * d[3])
+}
+
+/// Squared angle between two rotations.
+///
+/// Of the chords to both signs the smaller counts. Differences keep their digits where rotations are nearly equal, which an
+/// inner product does not.
+#[inline(always)]
+fn squared_angle<T: Real, const WIDE: bool>(a: [T; 4], b: [T; 4]) -> T {
+    let near = chord(a, b);
+    if WIDE {
+        let far = chord(a, [-b[0], -b[1], -b[2], -b[3]]);
+        near.min(far).square_of_angle()
+    } else {
+        near.square_of_angle()
+    }
+}
+
+/// Calls `add(i, squared distance)` for the pairs of columns `at[0] + i` and `at[1] + i` of a joint.
+#[inline(always)]
+fn each_square<T: Real>(
+    a: &Features<'_, T>,
+    b: &Features<'_, T>,
+    at: [usize; 2],
+    joint: usize,
+    n: usize,
+    mut add: impl FnMut(usize, T),
+) {
+    let (here, there) = (a.joints[joint].row, b.joints[joint].row);
+    match a.joints[joint].kind {
+        Kind::Vector => {
+            let x = a.planes.rows_from::<3>(here).map(|x| &x[at[0]..at[0] + n]);
+            let y = b.planes.rows_from::<3>(there).map(|y| &y[at[1]..at[1] + n]);
+            for i in 0..n {
+                let (u, v, w) = (y[0][i] - x[0][i], y[1][i] - x[1][i], y[2][i] - x[2][i]);
+                add(i, u * u + v * v + w * w);
+            }
+        }
+        kind => {
+            let q = a.planes.rows_from::<4>(here).map(|q| &q[at[0]..at[0] + n]);
+            let r = b.planes.rows_from::<4>(there).map(|r| &r[at[1]..at[1] + n]);
+            if kind == Kind::Narrow {
+                for i in 0..n {
+                    add(i, squared_angle::<T, false>(quaternion(q, i), quaternion(r, i)));
+                }
+            } else {
+                for i in 0..n {
+                    add(i, squared_angle::<T, true>(quaternion(q, i), quaternion(r, i)));
+                }
+            }
+        }
+    }
+}
+
+multiversion! {
+    /// `d = Σ factor·square` over joints, for the pairs of columns `at[0] + i` and `at[1] + i`.
+    pub(crate) fn frame_distances<T: Real>(
+        d: &mut [T], a: &Features<'_, T>, b: &Features<'_, T>, at: [usize; 2], joints: Range<usize>, factors: &[T],
+    ) {
+        let n = d.len();
+        d.fill(T::ZERO);
+        for joint in joints {
+            let factor = factors[joint];
+            let d = &mut d[..n];
+            each_square(a, b, at, joint, n, |i, square| d[i] += factor * square);
+        }
+    }
+}
+
+multiversion! {
+    /// `d = Σ c·factor·square`, `total = Σ c·unit` over joints, where `c` is the product of the shares of both samples.
+    pub(crate) fn shared_frame_distances<T: Real>(
+        d: &mut [T], total: &mut [T], a: &Features<'_, T>, b: &Features<'_, T>, at: [usize; 2], joints: Range<usize>,
+        factors: &[T], units: &[T],
+    ) {
+        let n = d.len();
+        d.fill(T::ZERO);
+        total.fill(T::ZERO);
+        let (Some(here), Some(there)) = (a.shares, b.shares) else { return };
+        for joint in joints {
+            let (factor, unit) = (factors[joint], units[joint]);
+            let (d, total) = (&mut d[..n], &mut total[..n]);
+            let (c, e) = (&here.row(joint)[at[0]..at[0] + n], &there.row(joint)[at[1]..at[1] + n]);
+            each_square(a, b, at, joint, n, |i, square| {
+                let share = c[i] * e[i];
+                d[i] += factor * share * square;
+                total[i] += unit * share;
+            });
+        }
+    }
+}
+
+multiversion! {
+    /// `to[i] = a[i] + a[i + shift]`.
+    fn add_shifted<T: Real>(to: &mut [T], a: &[T], shift: usize) {
+        let n = to.len();
+        let (a, b) = (&a[..n], &a[shift..shift + n]);
+        for i in 0..n {
+            to[i] = a[i] + b[i];
+        }
+    }
+}
+
+multiversion! {
+    /// `to += a`.
+    fn add_plane<T: Real>(to: &mut [T], a: &[T]) {
+        let n = to.len();
+        let a = &a[..n];
+        for i in 0..n {
+            to[i] += a[i];
+        }
+    }
+}
+
+/// Sums over a sliding window: `out[i] = values[i] + … + values[i + window − 1]`.
+///
+/// Windows are put together from sums over powers of two, so the cost hardly grows with the window, every sum is of
+/// positive terms only, and none runs on: a burst in one place leaves no error elsewhere, and a sum depends on its own
+/// terms alone, wherever the values begin. `values` is used up.
+pub(crate) fn sliding_sums<T: Real>(
+    values: &mut Vec<T>,
+    spare: &mut Vec<T>,
+    window: usize,
+    out: &mut [T],
+) {
+    let n = out.len();
+    out.fill(T::ZERO);
+    let (mut covered, mut power) = (0, 1);
+    loop {
+        if window & power != 0 {
+            add_plane(out, &values[covered..covered + n]);
+            covered += power;
+        }
+        if covered == window {
+            return;
+        }
+        let length = values.len() - power;
+        spare.resize(length, T::ZERO);
+        add_shifted(&mut spare[..length], values, power);
+        std::mem::swap(values, spare);
+        values.truncate(length);
+        power *= 2;
+    }
+}
+
+multiversion! {
+    /// `d ← √(scale·d)`.
+    pub(crate) fn roots<T: Real>(d: &mut [T], scale: T) {
+        for d in d {
+            *d = (scale * *d).sqrt();
+        }
+    }
+}
+
+multiversion! {
+    /// `d ← √(d / total)`, or `√d` if they are not `averaged`; infinite where the total is 0.
+    pub(crate) fn shared_roots<T: Real>(d: &mut [T], total: &[T], averaged: bool) {
+        let n = d.len();
+        let total = &total[..n];
+        for i in 0..n {
+            let some = total[i] > T::ZERO;
+            let divisor = if averaged { total[i] } else { T::ONE };
+            let root = (d[i] / divisor).sqrt();
+            d[i] = if some { root } else { T::ONE / T::ZERO };
+        }
+    }
+}
+
+multiversion! {
+    /// Marks with 1 where `keep·d[i] − spread[i] ≤ limit[i]`, and tells whether there is a mark.
+    pub(crate) fn mark_near<T: Real>(marks: &mut [u8], d: &[T], spread: &[T], limit: &[T], keep: T) -> bool {
+        let n = marks.len();
+        let (d, spread, limit) = (&d[..n], &spread[..n], &limit[..n]);
+        let mut any = 0;
+        for i in 0..n {
+            let near = u8::from(keep * d[i] - spread[i] <= limit[i]);
+            marks[i] = near;
+            any |= near;
+        }
+        any != 0
+    }
+}
+
+multiversion! {
+    /// Marks with 1 where `d[i] ≤ limit[i]`, and tells whether there is a mark.
+    pub(crate) fn mark_nearest<T: Real>(marks: &mut [u8], d: &[T], limit: &[T]) -> bool {
+        let n = marks.len();
+        let (d, limit) = (&d[..n], &limit[..n]);
+        let mut any = 0;
+        for i in 0..n {
+            let near = u8::from(d[i] <= limit[i]);
+            marks[i] = near;
+            any |= near;
+        }
+        any != 0
+    }
+}
+
+multiversion! {
+    /// `most = max(most, x)`.
+    pub(crate) fn keep_largest<T: Real>(most: &mut [T], x: &[T]) {
+        let n = most.len();
+        let x = &x[..n];
+        for i in 0..n {
+            most[i] = most[i].max(x[i]);
+        }
+    }
+}
