@@ -1,7 +1,7 @@
 //! Distances of the patches of one diagonal.
 
 use super::features::Features;
-use super::kernels;
+use super::kernels::{self, LANES};
 use crate::Real;
 use std::ops::Range;
 
@@ -50,7 +50,7 @@ pub(crate) struct Diagonal<T> {
 
 impl<T: Real> Diagonal<T> {
     /// Distances of the patches whose middles stand at the columns `at[0] + i` of `a` and `at[1] + i` of `b`, into `out`;
-    /// infinite where no two samples can be compared.
+    /// infinite where no two samples can be compared. Planes must hold [`LANES`] columns more than the patches.
     ///
     /// A distance depends on its two patches alone, to the last bit, and not on which of them is `a`.
     pub(crate) fn measure(
@@ -62,7 +62,7 @@ impl<T: Real> Diagonal<T> {
         out: &mut [T],
     ) {
         let window = measure.window();
-        let span = out.len() + window - 1;
+        let span = (out.len() + window - 1).next_multiple_of(LANES);
         let at = at.map(|at| at - measure.before);
         let (joints, factors) = (measure.joints.clone(), &measure.factors[..]);
         let Self { squares, shares, totals, spare } = self;

@@ -46,9 +46,3 @@ pub(crate) struct Side<'a, T> {
     /// How many middles.
     pub(crate) count: usize,
 }
-
-/// The quaternion that stands at a column.
-#[inline(always)]
-pub(crate) fn quaternion<T: Real>(q: [&[T]; 4], i: usize) -> [T; 4] {
-    [q[0][i], q[1][i], q[2][i], q[3][i]]
-}

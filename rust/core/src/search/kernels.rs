@@ -1,6 +1,6 @@
 //! The vectorised loops: maps over the pairs of a diagonal.
 
-use super::features::{Features, Kind, quaternion};
+use super::features::{Features, Kind};
 use crate::Real;
 use crate::simd::multiversion;
 use std::ops::Range;
@@ -27,72 +27,80 @@ fn squared_angle<T: Real, const WIDE: bool>(a: [T; 4], b: [T; 4]) -> T {
     }
 }
 
-/// Calls `add(i, squared distance)` for the pairs of columns `at[0] + i` and `at[1] + i` of a joint.
-#[inline(always)]
-fn each_square<T: Real>(
-    a: &Features<'_, T>,
-    b: &Features<'_, T>,
-    at: [usize; 2],
-    joint: usize,
-    n: usize,
-    mut add: impl FnMut(usize, T),
-) {
-    let (here, there) = (a.joints[joint].row, b.joints[joint].row);
-    match a.joints[joint].kind {
-        Kind::Vector => {
-            let x = a.planes.rows_from::<3>(here).map(|x| &x[at[0]..at[0] + n]);
-            let y = b.planes.rows_from::<3>(there).map(|y| &y[at[1]..at[1] + n]);
-            for i in 0..n {
-                let (u, v, w) = (y[0][i] - x[0][i], y[1][i] - x[1][i], y[2][i] - x[2][i]);
-                add(i, u * u + v * v + w * w);
-            }
-        }
-        kind => {
-            let q = a.planes.rows_from::<4>(here).map(|q| &q[at[0]..at[0] + n]);
-            let r = b.planes.rows_from::<4>(there).map(|r| &r[at[1]..at[1] + n]);
-            if kind == Kind::Narrow {
-                for i in 0..n {
-                    add(i, squared_angle::<T, false>(quaternion(q, i), quaternion(r, i)));
-                }
-            } else {
-                for i in 0..n {
-                    add(i, squared_angle::<T, true>(quaternion(q, i), quaternion(r, i)));
+/// Columns that loops take at once: planes must hold so many more than are asked for.
+///
+/// One vector of float32 at the widest level: what is left over would take longer, number by number, than all the rest.
+pub(crate) const LANES: usize = 16;
+
+/// Runs a body for the pairs of columns `at[0] + i` and `at[1] + i` of a joint, with their squared distance.
+///
+/// A macro, for a loop is compiled without a rest only where the lengths of all slices are plain to see.
+macro_rules! each_square {
+    ($a:expr, $b:expr, $at:expr, $joint:expr, $n:expr, |$i:ident, $square:ident| $body:expr) => {
+        let (here, there, n) = ($a.joints[$joint].row, $b.joints[$joint].row, $n);
+        let x = |plane: usize| &$a.planes.row(here + plane)[$at[0]..$at[0] + n];
+        let y = |plane: usize| &$b.planes.row(there + plane)[$at[1]..$at[1] + n];
+        let (x0, x1, x2) = (x(0), x(1), x(2));
+        let (y0, y1, y2) = (y(0), y(1), y(2));
+        match $a.joints[$joint].kind {
+            Kind::Vector => {
+                for $i in 0..n {
+                    let (u, v, w) = (y0[$i] - x0[$i], y1[$i] - x1[$i], y2[$i] - x2[$i]);
+                    let $square = u * u + v * v + w * w;
+                    $body;
                 }
             }
+            Kind::Narrow => {
+                let (x3, y3) = (x(3), y(3));
+                for $i in 0..n {
+                    let (q, r) = ([x0[$i], x1[$i], x2[$i], x3[$i]], [y0[$i], y1[$i], y2[$i], y3[$i]]);
+                    let $square = squared_angle::<T, false>(q, r);
+                    $body;
+                }
+            }
+            Kind::Wide => {
+                let (x3, y3) = (x(3), y(3));
+                for $i in 0..n {
+                    let (q, r) = ([x0[$i], x1[$i], x2[$i], x3[$i]], [y0[$i], y1[$i], y2[$i], y3[$i]]);
+                    let $square = squared_angle::<T, true>(q, r);
+                    $body;
+                }
+            }
         }
-    }
+    };
 }
 
 multiversion! {
-    /// `d = Σ factor·square` over joints, for the pairs of columns `at[0] + i` and `at[1] + i`.
+    /// `d = Σ factor·square` over joints, for the pairs of columns `at[0] + i` and `at[1] + i`, a multiple of [`LANES`].
     pub(crate) fn frame_distances<T: Real>(
         d: &mut [T], a: &Features<'_, T>, b: &Features<'_, T>, at: [usize; 2], joints: Range<usize>, factors: &[T],
     ) {
-        let n = d.len();
+        let n = d.len() / LANES * LANES;
+        let d = &mut d[..n];
         d.fill(T::ZERO);
         for joint in joints {
             let factor = factors[joint];
-            let d = &mut d[..n];
-            each_square(a, b, at, joint, n, |i, square| d[i] += factor * square);
+            each_square!(a, b, at, joint, n, |i, square| d[i] += factor * square);
         }
     }
 }
 
 multiversion! {
-    /// `d = Σ c·factor·square`, `total = Σ c·unit` over joints, where `c` is the product of the shares of both samples.
+    /// `d = Σ c·factor·square`, `total = Σ c·unit` over joints, where `c` is the product of the shares of both samples, for a
+    /// multiple of [`LANES`] pairs.
     pub(crate) fn shared_frame_distances<T: Real>(
         d: &mut [T], total: &mut [T], a: &Features<'_, T>, b: &Features<'_, T>, at: [usize; 2], joints: Range<usize>,
         factors: &[T], units: &[T],
     ) {
-        let n = d.len();
+        let n = d.len() / LANES * LANES;
+        let (d, total) = (&mut d[..n], &mut total[..n]);
         d.fill(T::ZERO);
         total.fill(T::ZERO);
         let (Some(here), Some(there)) = (a.shares, b.shares) else { return };
         for joint in joints {
             let (factor, unit) = (factors[joint], units[joint]);
-            let (d, total) = (&mut d[..n], &mut total[..n]);
             let (c, e) = (&here.row(joint)[at[0]..at[0] + n], &there.row(joint)[at[1]..at[1] + n]);
-            each_square(a, b, at, joint, n, |i, square| {
+            each_square!(a, b, at, joint, n, |i, square| {
                 let share = c[i] * e[i];
                 d[i] += factor * share * square;
                 total[i] += unit * share;

@@ -5,6 +5,7 @@ use crate::parallel::Interrupt;
 use crate::rotations::mean::mean;
 use crate::rotations::quaternion::{dot, is_missing, unit};
 use crate::search::features::{Features, Joint, Kind};
+use crate::search::kernels::LANES;
 use crate::{ClipView, Error, Real};
 use std::ops::Range;
 
@@ -82,7 +83,7 @@ impl<T: Real> Poses<T> {
     /// Loads some frames of a clip and `pad` more at both ends; beyond the ends of the clip its end frames are held.
     pub(crate) fn load(&self, clip: ClipView<'_, T>, frames: Range<usize>, pad: usize, to: &mut Loaded<T>) {
         let joints = self.joints.len();
-        let length = frames.len() + 2 * pad;
+        let length = frames.len() + 2 * pad + LANES;
         to.joints.clone_from(&self.joints);
         to.planes.reshape(joints * PER_JOINT, length);
         if self.complete {
