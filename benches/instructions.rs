@@ -9,6 +9,7 @@ use quatfilt_core::filters::nonlocal_pose_means::{Chart, NonlocalPoseMeans, Weig
 use quatfilt_core::noise::noise;
 use quatfilt_core::parallel::{self, Interrupt};
 use quatfilt_core::rotations::{mean, quaternion};
+use quatfilt_core::search::patch_neighbors::PatchNeighbors;
 use quatfilt_core::{ClipMut, ClipView, Real};
 use quatfilt_formats::Precision;
 use quatfilt_formats::bvh::{self, FrameTime};
@@ -54,6 +55,13 @@ fn numbers<T: Real>(kernel: &str, repetitions: usize) -> Result<(), Box<dyn erro
         }
         "mean" => repeat(repetitions, || mean::mean(clip, None, &interrupt).map(|_| ()))?,
         "noise_level" => repeat(repetitions, || noise::noise_level(clip, &mut numbers[..JOINTS]))?,
+        "patch_neighbors" => {
+            let search =
+                PatchNeighbors { patch_radius: 5, count: 16, exclusion: 5, weights: vec![1.0; JOINTS] };
+            let mut indices = vec![0; FRAMES * search.count];
+            let distances = &mut numbers[..FRAMES * search.count];
+            repeat(repetitions, || search.search(clip, None, &mut indices, distances, &interrupt))?;
+        }
         _ => {
             let filter = filter(kernel)?;
             repeat(repetitions, || {

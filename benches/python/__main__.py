@@ -8,6 +8,7 @@ from conditions import conditions
 from report import Results, aims_table, show, write
 
 ROOMS = ("rotations", "filters", "classical", "noise", "geodesics", "poses", "formats")
+ROOMS = ("rotations", "filters", "classical", "noise", "geodesics", "search", "formats")
 
 
 def main() -> None:

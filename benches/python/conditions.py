@@ -8,7 +8,17 @@ from pathlib import Path
 import quatfilt as qf
 from timing import all_threads
 
-_PACKAGES = ("quatfilt", "numpy", "scipy", "numba", "numpy-quaternion", "quaternionic", "pybvh", "filterpy")
+_PACKAGES = (
+    "quatfilt",
+    "numpy",
+    "scipy",
+    "numba",
+    "numpy-quaternion",
+    "quaternionic",
+    "pybvh",
+    "filterpy",
+    "faiss-cpu",
+)
 
 
 def conditions(repetitions: int) -> dict[str, str]:

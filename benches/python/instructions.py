@@ -29,6 +29,7 @@ KERNELS = (
             "nlpm",
             "nlpm_local",
             "nlpm_joint",
+            "patch_neighbors",
         )
         for dtype in ("f32", "f64")
     ),

@@ -135,6 +135,15 @@ CALLS = {
     "orientation_filter": lambda a, _b, _v: qf.orientation_filter(
         with_gaps(a), [1, 2, 3, 2, 1], confidence=np.arange(FRAMES) % 7 / 6
     ),
+    "patch_neighbors": lambda a, b, _v: np.concatenate(
+        [
+            x.astype(a.dtype)
+            for x in (
+                *qf.patch_neighbors(a[:600], k=4),
+                *qf.patch_neighbors(with_gaps(b)[:300], k=4, library=a[:500]),
+            )
+        ]
+    ),
     "predict_pose": lambda a, _b, _v: predicted(a),
     "resample": lambda a, _b, _v: qf.resample(a, fps=30, new_fps=31.7),
     "savgol": lambda a, _b, _v: qf.savgol(with_gaps(a), window_length=11),

@@ -27,7 +27,7 @@ def library(value: Any, like: Array, *, scalar_first: bool) -> tuple[Array | Non
     for name, one in named.items():
         array, _ = clip(one, name, scalar_first=scalar_first)
         if array.shape[1] != like.shape[1]:
-            raise ValueError(f"{name}: expected {like.shape[1]} joints as in the rotations, got {array.shape[1]}")
+            raise ValueError(f"{name}: expected {like.shape[1]} joints as in the clip, got {array.shape[1]}")
         clips.append(array.astype(like.dtype, copy=False))
     together = np.concatenate(clips) if len(clips) > 1 else clips[0]
     return np.ascontiguousarray(together), [len(one) for one in clips]

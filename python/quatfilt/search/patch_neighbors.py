@@ -13,7 +13,7 @@ from quatfilt._typing import Array
 _LONGEST_RADIUS = 100_000
 """Frames: patches beyond it would take memory for frames that no clip has."""
 
-_MOST = 1_000_000
+_MOST = 100_000
 """More neighbours of every frame than memory holds for any clip."""
 
 _LONGEST_EXCLUSION = 1_000_000_000
@@ -44,7 +44,7 @@ def patch_neighbors(
     patch_radius : int, frames, default 5
         Radius of a patch, from 0 to 100,000.
     k : int, default 16
-        How many neighbours, from 1 to 1,000,000.
+        How many neighbours, from 1 to 100,000.
     exclusion : int or None, frames, default None
         In the clip itself, the frame and so many frames before and after it are left out; None for `patch_radius`. Not with
         a library.
@@ -96,14 +96,16 @@ def patch_neighbors(
     >>> bool((distances[40] < 1e-9).all())
     True
     """
-    clip, _ = _validation.clip(q, scalar_first=scalar_first)
+    clip, _ = _validation.clip(q, "q", scalar_first=scalar_first)
     radius = _validation.integer(patch_radius, "patch_radius", at_least=0, at_most=_LONGEST_RADIUS)
     count = _validation.integer(k, "k", at_least=1, at_most=_MOST)
     zone = radius
     if exclusion is not None:
         zone = _validation.integer(exclusion, "exclusion", at_least=0, at_most=_LONGEST_EXCLUSION)
         if library is not None:
-            raise ValueError(f"exclusion: expected None with a library, got {zone}")
+            raise ValueError(
+                f"exclusion: expected None with a library, whose frames are not near in time, got {zone}"
+            )
     weights = np.ones(clip.shape[1])
     if joint_weights is not None:
         weights = _validation.per_joint(joint_weights, "joint_weights", clip.shape[1], at_least=0)

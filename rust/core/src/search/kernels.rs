@@ -136,12 +136,7 @@ multiversion! {
 /// Windows are put together from sums over powers of two, so the cost hardly grows with the window, every sum is of
 /// positive terms only, and none runs on: a burst in one place leaves no error elsewhere, and a sum depends on its own
 /// terms alone, wherever the values begin. `values` is used up.
-pub(crate) fn sliding_sums<T: Real>(
-    values: &mut Vec<T>,
-    spare: &mut Vec<T>,
-    window: usize,
-    out: &mut [T],
-) {
+pub(crate) fn sliding_sums<T: Real>(values: &mut Vec<T>, spare: &mut Vec<T>, window: usize, out: &mut [T]) {
     let n = out.len();
     out.fill(T::ZERO);
     let (mut covered, mut power) = (0, 1);

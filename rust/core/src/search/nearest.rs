@@ -54,7 +54,9 @@ impl<T: Real> Nearest<T> {
     fn rank(&self, frame: usize, number: usize) -> usize {
         match self.ties {
             Ties::Lower => number,
-            Ties::Nearer => 2 * number.abs_diff(self.first + frame) + usize::from(number > self.first + frame),
+            Ties::Nearer => {
+                2 * number.abs_diff(self.first + frame) + usize::from(number > self.first + frame)
+            }
         }
     }
 

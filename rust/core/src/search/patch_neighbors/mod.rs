@@ -97,7 +97,8 @@ impl PatchNeighbors {
             averaged: true,
         };
         let poses = Poses::new(clip, scenes, interrupt)?;
-        for (tile, nearest) in self.nearest(&measure, &poses, clip, scenes, &lags, interrupt)?.iter().enumerate()
+        for (tile, nearest) in
+            self.nearest(&measure, &poses, clip, scenes, &lags, interrupt)?.iter().enumerate()
         {
             for frame in tile * TASK_FRAMES..frames.min((tile + 1) * TASK_FRAMES) {
                 let row = frame * self.count;
