@@ -42,7 +42,14 @@ fn defaults<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Erro
     let filter = settings::nonlocal_pose_means(joints);
     let interrupt = Interrupt::new();
     timer.levels::<T, _, _>("filters/nonlocal_pose_means", size, || {
-        filter.filter(clip, None, None, ClipMut::new(&mut out, clip.frames(), clip.joints())?, &interrupt)
+        filter.filter(
+            clip,
+            None,
+            None,
+            None,
+            ClipMut::new(&mut out, clip.frames(), clip.joints())?,
+            &interrupt,
+        )
     })
 }
 
@@ -65,7 +72,14 @@ fn variations<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Er
         ("patch_radius=50", NonlocalPoseMeans { patch_radius: 50, ..default() }),
     ] {
         timer.threads::<T, _, _>(&format!("filters/nonlocal_pose_means/{change}"), size, || {
-            filter.filter(clip, None, None, ClipMut::new(&mut out, clip.frames(), clip.joints())?, &interrupt)
+            filter.filter(
+                clip,
+                None,
+                None,
+                None,
+                ClipMut::new(&mut out, clip.frames(), clip.joints())?,
+                &interrupt,
+            )
         })?;
     }
     Ok(())

@@ -66,7 +66,7 @@ fn numbers<T: Real>(kernel: &str, repetitions: usize) -> Result<(), Box<dyn erro
             let filter = filter(kernel)?;
             repeat(repetitions, || {
                 let out = ClipMut::new(&mut out, clip.frames(), clip.joints())?;
-                filter.filter(clip, None, None, out, &interrupt)
+                filter.filter(clip, None, None, None, out, &interrupt)
             })?;
         }
     }

@@ -15,16 +15,21 @@ DEFAULTS = {
     "chart": "mean",
     "boundary": "nearest",
     "lookahead": -1,
+    "library": None,
+    "lengths": [],
 }
 
 
 def arguments(q, **options):
-    """Positional arguments of a backend's function; `bandwidth` is a number or one per joint."""
+    """Positional arguments of a backend's function; `bandwidth` is a number or one per joint, `library` a list."""
     chosen = DEFAULTS | options
     chosen["bandwidth"] = np.broadcast_to(chosen["bandwidth"], q.shape[1]).astype(np.float64)
     for name in ("translation", "confidence"):
         if chosen[name] is not None:
             chosen[name] = np.require(chosen[name], q.dtype, "C")
+    if chosen["library"] is not None:
+        chosen["lengths"] = [len(clip) for clip in chosen["library"]]
+        chosen["library"] = np.require(np.concatenate(chosen["library"]), q.dtype, "C")
     return np.ascontiguousarray(q), *(chosen[name] for name in DEFAULTS)
 
 

@@ -174,6 +174,8 @@ def nonlocal_pose_means(
     chart: str,
     boundary: str,
     lookahead: int,
+    library: Array | None,
+    lengths: list[int],
     /,
 ) -> tuple[Array, Array | None]: ...
 

@@ -137,7 +137,7 @@ WRONG_OPTIONS = [
     ("boundary", "wrap", ValueError, "expected one of 'nearest', 'mirror', 'linear', got 'wrap'"),
     ("gaps", "drop", ValueError, "expected one of 'fill', 'keep', 'raise', got 'drop'"),
     ("gaps", True, ValueError, "expected one of 'fill', 'keep', 'raise', got True"),
-    ("library", [], ValueError, "expected None; patches of other clips are not searched in this version"),
+    ("library", [], ValueError, "expected a clip or a list of at least one, got none"),
     ("max_gap", -1, ValueError, f"{NOT_NEGATIVE}, got -1"),
     ("max_gap", math.nan, ValueError, f"{NOT_NEGATIVE}, got nan"),
     ("max_gap", "1 s", TypeError, f"{NOT_NEGATIVE}, got str"),

@@ -33,7 +33,7 @@ def compare(backend, q, options, *, translation=None, confidence=None):
         q, bandwidth=[0.3, 0.4], translation=translation, confidence=confidence, **options
     )
     rotations, positions = backend.nonlocal_pose_means(*arguments)
-    expected, expected_positions, ambiguous = direct_nonlocal_pose_means(*arguments)
+    expected, expected_positions, ambiguous = direct_nonlocal_pose_means(*arguments[:-2])
     error = (clips.rotation(rotations).inv() * expected).magnitude().reshape(ambiguous.shape)
     assert error[~ambiguous].max(initial=0) < tolerances.FLOAT64
     if translation is not None:

@@ -19,7 +19,7 @@ from quatfilt._reference.filters.gaussian import gaussian
 from quatfilt._reference.filters.kalman.ratio import kalman_process_noise, kalman_vectors_ratio
 from quatfilt._reference.filters.kalman.rotations import kalman
 from quatfilt._reference.filters.kalman.vectors import kalman_vectors
-from quatfilt._reference.filters.nonlocal_pose_means import nonlocal_pose_means
+from quatfilt._reference.filters.nonlocal_pose_means.nonlocal_pose_means import nonlocal_pose_means
 from quatfilt._reference.filters.one_euro import one_euro
 from quatfilt._reference.filters.orientation_filter import orientation_filter
 from quatfilt._reference.filters.savgol import savgol, savgol_derivative

@@ -79,6 +79,7 @@ fn filters<T: Real>() -> Result<Vec<(&'static str, Vec<T>)>, Error> {
                 view,
                 None,
                 None,
+                None,
                 ClipMut::new(&mut out, view.frames(), view.joints())?,
                 &interrupt,
             )?;

@@ -12,13 +12,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from layouts import LAYOUTS
 from quatfilt import _core, _reference
-from quatfilt._reference.filters.nonlocal_pose_means import (
+from quatfilt._reference.filters.nonlocal_pose_means.candidates import (
     Comparison,
-    causal_window,
-    extend,
     frames_with_candidate,
+    library_distances,
     patch_distances,
 )
+from quatfilt._reference.filters.nonlocal_pose_means.nonlocal_pose_means import causal_window, extend
+from quatfilt._reference.search.patch_neighbors import extended
 
 DTYPES = [np.float32, np.float64]
 CHARTS = ["mean", "identity", "local"]
@@ -44,9 +45,14 @@ def clear(q, options):
     bandwidth = np.broadcast_to(chosen["bandwidth"], q.shape[1]).astype(np.float64)
     how = Comparison(lags, window < 0, patch, future, bandwidth, chosen["distance"] == "mean", joint_wise)
     clip = extend(q, None, chosen["confidence"], max(window, 0) + patch, chosen["boundary"], chosen["chart"])
-    distances = np.full((len(lags) + count + 1, len(q), q.shape[1] if joint_wise else 1), np.inf)
+    library = chosen["library"]
+    more = sum(map(len, library)) if library else 0
+    distances = np.full((len(lags) + more + count + 1, len(q), q.shape[1] if joint_wise else 1), np.inf)
     for row, lag in zip(distances, lags, strict=False):
         row[frames_with_candidate(clip, how, lag)] = patch_distances(clip, how, lag)
+    for t in range(len(q) if library else 0):
+        others = extended([part.astype(q.dtype) for part in library], patch)
+        distances[len(lags) : len(lags) + more, t] = library_distances(clip, how, others, t)
     last, following = np.sort(distances, axis=0)[count - 1 : count + 1]
     with np.errstate(invalid="ignore"):
         return everywhere & ((last == np.inf) | (following - last > CLOSE[q.dtype] * following))

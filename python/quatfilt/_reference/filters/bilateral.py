@@ -9,7 +9,7 @@ import numpy as np
 
 from quatfilt._reference._arrays import Reals
 from quatfilt._reference.filters.boundary import Boundary, extend_rotations, extend_vectors
-from quatfilt._reference.filters.nonlocal_pose_means import in_hemisphere_of
+from quatfilt._reference.filters.nonlocal_pose_means.nonlocal_pose_means import in_hemisphere_of
 from quatfilt._reference.filters.orientation_filter import coefficients, increments_around
 from quatfilt._reference.rotations.quaternion import exp, geodesic_distance, multiply, normalize
 

@@ -22,7 +22,7 @@ import numpy as np
 
 from quatfilt._reference._arrays import Reals
 from quatfilt._reference.filters.boundary import Boundary, extend_by_index, extend_vectors
-from quatfilt._reference.filters.nonlocal_pose_means import in_hemisphere_of
+from quatfilt._reference.filters.nonlocal_pose_means.nonlocal_pose_means import in_hemisphere_of
 from quatfilt._reference.rotations.quaternion import between, exp, log_short, multiply, norm, normalize
 
 SHORTEST_MEAN = 0.1

@@ -7,7 +7,7 @@ Systems*, CHI 2012.
 import numpy as np
 
 from quatfilt._reference._arrays import Reals
-from quatfilt._reference.filters.nonlocal_pose_means import in_hemisphere_of
+from quatfilt._reference.filters.nonlocal_pose_means.nonlocal_pose_means import in_hemisphere_of
 from quatfilt._reference.filters.ways import moved, way_between
 from quatfilt._reference.rotations.quaternion import norm, normalize
 

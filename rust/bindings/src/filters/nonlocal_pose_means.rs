@@ -2,6 +2,7 @@
 
 use super::names::{self, named};
 use crate::array::{by_dtype, elements, input, output, run_interruptible};
+use crate::search::patch_neighbors::clips;
 use numpy::{Element, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use quatfilt_core::filters::nonlocal_pose_means::{Chart, Distance, NonlocalPoseMeans, Translation, Weights};
@@ -11,7 +12,7 @@ use quatfilt_core::{ClipMut, ClipView, Real};
 ///
 /// −1 stands for the whole clip (`search_radius`), all candidates (`neighbors`) and no limit (`lookahead`).
 #[pyfunction]
-#[pyo3(signature = (q, translation, confidence, bandwidth, search_radius, patch_radius, distance, weights, neighbors, chart, boundary, lookahead, /))]
+#[pyo3(signature = (q, translation, confidence, bandwidth, search_radius, patch_radius, distance, weights, neighbors, chart, boundary, lookahead, library, lengths, /))]
 #[allow(clippy::too_many_arguments, reason = "the reference's positional arguments")]
 pub(crate) fn nonlocal_pose_means(
     py: Python<'_>,
@@ -27,6 +28,8 @@ pub(crate) fn nonlocal_pose_means(
     chart: &str,
     boundary: &str,
     lookahead: i64,
+    library: Option<&Bound<'_, PyAny>>,
+    lengths: Vec<usize>,
 ) -> PyResult<(Py<PyAny>, Option<Py<PyAny>>)> {
     let filter = filter(
         bandwidth,
@@ -39,7 +42,7 @@ pub(crate) fn nonlocal_pose_means(
         boundary,
         lookahead,
     )?;
-    by_dtype!(q, T => typed::<T>(py, &filter, q, translation, confidence))
+    by_dtype!(q, T => typed::<T>(py, &filter, q, translation, confidence, library, &lengths))
 }
 
 /// The filter, of positional arguments.
@@ -79,10 +82,13 @@ fn typed<T: Real + Element>(
     q: &Bound<'_, PyAny>,
     translation: Option<&Bound<'_, PyAny>>,
     confidence: Option<&Bound<'_, PyAny>>,
+    library: Option<&Bound<'_, PyAny>>,
+    lengths: &[usize],
 ) -> PyResult<(Py<PyAny>, Option<Py<PyAny>>)> {
     let q = input::<T>("q", q)?;
     let translation = translation.map(|array| input::<T>("translation", array)).transpose()?;
     let confidence = confidence.map(|array| input::<T>("confidence", array)).transpose()?;
+    let library = library.map(|array| input::<T>("library", array)).transpose()?;
     let (frames, joints) = (q.shape()[0], q.shape()[1]);
     let out = output::<T>(py, q.shape());
     let moved_out = translation.as_ref().map(|translation| output::<T>(py, translation.shape()));
@@ -94,11 +100,14 @@ fn typed<T: Real + Element>(
         let out = out.as_slice_mut()?;
         let mut moved_out = moved_out.as_ref().map(PyArrayMethods::readwrite);
         let moved_out = moved_out.as_mut().map(|array| array.as_slice_mut()).transpose()?;
-        let window = filter.search_radius.map_or(frames, |radius| radius.min(frames));
+        let scenes = library.as_ref().map(|array| clips("library", array, lengths)).transpose()?;
+        let others: usize = lengths.iter().sum();
+        let window = others / 8 + filter.search_radius.map_or(frames, |radius| radius.min(frames));
         run_interruptible(py, q.len() * window, |interrupt| {
             let translation = values.zip(moved_out).map(|(values, out)| Translation { values, out });
             let out = ClipMut::new(out, frames, joints)?;
-            filter.filter(ClipView::new(q, frames, joints)?, confidence, translation, out, interrupt)
+            let clip = ClipView::new(q, frames, joints)?;
+            filter.filter(clip, scenes.as_deref(), confidence, translation, out, interrupt)
         })?;
     }
     Ok((out.into_any().unbind(), moved_out.map(|array| array.into_any().unbind())))

@@ -1,6 +1,6 @@
 //! Distances of the patches of one diagonal.
 
-use super::features::Features;
+use super::features::{Features, Joint, Kind};
 use super::kernels::{self, LANES};
 use crate::Real;
 use std::ops::Range;
@@ -24,6 +24,16 @@ pub(crate) struct Measure<T> {
 }
 
 impl<T: Real> Measure<T> {
+    /// The same measure where vectors are half rotation vectors, whose squares are a quarter of the rotations'.
+    pub(crate) fn halved(mut self, joints: &[Joint]) -> Self {
+        for (factor, joint) in self.factors.iter_mut().zip(joints) {
+            if joint.kind == Kind::Vector {
+                *factor *= T::TWO * T::TWO;
+            }
+        }
+        self
+    }
+
     /// Frames of a patch.
     pub(crate) fn window(&self) -> usize {
         self.before + self.after + 1

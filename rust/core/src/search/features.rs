@@ -1,6 +1,5 @@
 //! What frames are compared by: planes of numbers per joint.
 
-use crate::Real;
 use crate::clip::Planes;
 
 /// How two frames of a joint are compared.

@@ -11,7 +11,7 @@ import numpy as np
 
 from quatfilt._reference._arrays import Mask, Reals
 from quatfilt._reference.filters.kalman.covariance import Covariance
-from quatfilt._reference.filters.nonlocal_pose_means import in_hemisphere_of
+from quatfilt._reference.filters.nonlocal_pose_means.nonlocal_pose_means import in_hemisphere_of
 from quatfilt._reference.filters.ways import carried, moved, way_between
 from quatfilt._reference.rotations.quaternion import normalize
 

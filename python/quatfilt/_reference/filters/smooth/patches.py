@@ -10,7 +10,7 @@ import numpy as np
 
 from quatfilt._reference._arrays import Reals
 from quatfilt._reference.filters.development import developed_about
-from quatfilt._reference.filters.nonlocal_pose_means import in_hemisphere_of
+from quatfilt._reference.filters.nonlocal_pose_means.nonlocal_pose_means import in_hemisphere_of
 from quatfilt._reference.rotations.quaternion import exp, multiply, normalize
 
 LENGTH = 24

@@ -42,15 +42,6 @@ impl<'a, T: Real> Likeness<'a, T> {
         }
     }
 
-    /// Exponents `‖P_{u+lag} − P_u‖² / 2h²` of the pairs `(u, u + lag)`; infinite where no sample has confidence.
-    pub(super) fn exponents(&mut self, lag: usize, pairs: Range<usize>) -> &[T] {
-        let scale = self.measure(lag, pairs);
-        for e in &mut self.exponents {
-            *e *= scale;
-        }
-        &self.exponents
-    }
-
     /// Weights `e⁶⁰·exp(−exponent)` of the pairs `(u, u + lag)`.
     pub(super) fn weights(&mut self, lag: usize, pairs: Range<usize>) -> &[T] {
         let scale = self.measure(lag, pairs);

@@ -168,10 +168,9 @@ impl<'a, T: Real> Means<'a, T> {
         }
     }
 
-    /// Adds one candidate, `lag` frames before or after, to one frame of the tile.
-    pub(super) fn add_one(&mut self, frame: usize, lag: usize, later: bool, weight: T) {
+    /// Adds one candidate, which stands at a column of the planes, to one frame of the tile.
+    pub(super) fn add_one(&mut self, frame: usize, candidate: usize, weight: T) {
         let tile = self.tile;
-        let candidate = if later { tile.at + frame + lag } else { tile.at + frame - lag };
         self.most[frame] = self.most[frame].max(weight);
         self.total[frame] += weight;
         for joint in self.group.clone() {
@@ -190,6 +189,19 @@ impl<'a, T: Real> Means<'a, T> {
             let row = tile.rows.len() * PER_JOINT;
             let trust = self.trusted.as_ref().map_or(T::ONE, |trusted| trusted.row(row + 3)[candidate]);
             self.add_value(row, frame, weight * trust, translation.rows_from::<3>(0).map(|x| x[candidate]));
+        }
+    }
+
+    /// Adds one frame of the library to one frame of the tile. It has no translation.
+    pub(super) fn add_other(&mut self, frame: usize, other: usize, weight: T) {
+        let tile = self.tile;
+        let Some(library) = &tile.clip.library else { return };
+        self.most[frame] = self.most[frame].max(weight);
+        self.total[frame] += weight;
+        for joint in self.group.clone() {
+            let (r, trust) = library.sample(other, joint, tile.clip.reach.before);
+            let q = tile.planes.rows_from::<4>(tile.rows[joint]).map(|q| q[tile.at + frame]);
+            self.add_value(joint * PER_JOINT, frame, weight * trust, log_short(between(q, r)));
         }
     }
 
@@ -219,7 +231,9 @@ impl<'a, T: Real> Means<'a, T> {
                 kernels::multiply_planes(&mut trusted_own[..tile.frames], &own, confidence);
             }
             let [x, y, z, share] = self.sums.rows_mut::<PER_JOINT>(row).map(|sums| &mut sums[..tile.frames]);
-            let total = if self.trusted.is_some() { &share[..] } else { &self.total[..tile.frames] };
+            // Frames of the library have weights, but no translation.
+            let apart = index == tile.rows.len() && tile.clip.library.is_some();
+            let total = if self.trusted.is_some() || apart { &share[..] } else { &self.total[..tile.frames] };
             for (c, sums) in [x, y, z].into_iter().enumerate() {
                 match planes {
                     Some(planes) => kernels::settle(sums, &planes[c][here.clone()], total, &trusted_own),

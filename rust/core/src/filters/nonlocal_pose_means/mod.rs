@@ -17,22 +17,25 @@
 //! - `tile`: one tile, loaded into planes, and the pairs of frames that matter to it;
 //! - `likeness`: patch distances and weights;
 //! - `means`: weighted means, and back to quaternions;
-//! - `nearest`: only the most similar patches count;
+//! - `candidates`: only the most similar patches count, found by the patch search, also in a library of other clips;
 //! - `kernels`: the vectorised loops.
 
+mod candidates;
 mod kernels;
 mod likeness;
 mod means;
-mod nearest;
 mod path;
 mod tile;
 
 use crate::error::check_length;
 use crate::parallel::{self, Interrupt};
 use crate::rotations::quaternion;
+use crate::search::spread::MARGIN;
 use crate::window::{Boundary, Extended};
 use crate::{ClipMut, ClipView, Error, Real};
+use candidates::Library;
 use path::Paths;
+use std::ops::Range;
 use std::sync::Mutex;
 use tile::{Buffers, Clip, Tile};
 
@@ -115,6 +118,20 @@ pub(super) struct Reach {
 }
 
 impl NonlocalPoseMeans {
+    /// Whether the patch search may look beyond the ends of a whole clip, to pass over what does not matter. What is
+    /// extrapolated there could change the charts.
+    fn margin(&self) -> bool {
+        self.neighbors.is_some() && self.boundary != Boundary::Linear
+    }
+
+    /// The joints that share weights.
+    fn groups(&self, joints: usize) -> Vec<Range<usize>> {
+        match self.weights {
+            Weights::Pose => std::iter::once(0..joints).collect(),
+            Weights::Joint => (0..joints).map(|joint| joint..joint + 1).collect(),
+        }
+    }
+
     /// The reach in a clip of so many frames.
     pub(super) fn reach(&self, frames: usize) -> Reach {
         let window = self.search_radius.unwrap_or_else(|| frames.saturating_sub(1));
@@ -124,7 +141,7 @@ impl NonlocalPoseMeans {
             ahead: window.min(self.lookahead.map_or(usize::MAX, |ahead| ahead - after)),
             before: self.patch_radius,
             after,
-            pad: self.patch_radius + self.search_radius.unwrap_or(0),
+            pad: self.patch_radius + self.search_radius.unwrap_or(if self.margin() { MARGIN } else { 0 }),
             added: self.search_radius.is_some(),
         }
     }
@@ -134,11 +151,15 @@ impl NonlocalPoseMeans {
     /// No sample may be missing. `confidence`, `(frames, joints)` in 0…1, weighs samples in patch distances and in means.
     /// Quaternions need not have length 1 exactly.
     ///
+    /// Frames of `library` are candidates of every frame, wherever they are; only with the local chart and a number of
+    /// neighbours. Their samples may be missing.
+    ///
     /// # Errors
     /// [`Error::Length`] if slices do not fit together; [`Error::Interrupted`].
     pub fn filter<T: Real>(
         &self,
         clip: ClipView<'_, T>,
+        library: Option<&[ClipView<'_, T>]>,
         confidence: Option<&[T]>,
         translation: Option<Translation<'_, T>>,
         out: ClipMut<'_, T>,
@@ -164,6 +185,20 @@ impl NonlocalPoseMeans {
             return quaternion::normalize(clip.data(), out);
         }
         let reach = self.reach(frames);
+        let groups = self.groups(joints);
+        let clips = library.unwrap_or_default();
+        for other in clips {
+            check_length("joints of the library", joints, other.joints())?;
+        }
+        // Where samples of the library are missing, those of the clip have confidences too.
+        let shared = confidence.is_some() || clips.iter().any(incomplete);
+        let trusting =
+            if shared && confidence.is_none() { vec![T::ONE; frames * joints] } else { Vec::new() };
+        let confidence = if shared { Some(confidence.unwrap_or(&trusting)) } else { None };
+        let library = match library {
+            Some(clips) => Some(Library::new(self, clip, clips, shared, reach, &groups, interrupt)?),
+            None => None,
+        };
         let extended = Extended::new(clip, reach.pad, self.boundary);
         let paths = Paths::new(clip, &extended, self.chart, interrupt)?;
         let shared = Clip {
@@ -172,6 +207,7 @@ impl NonlocalPoseMeans {
             paths: &paths,
             confidence,
             translation: moved,
+            library,
             reach,
             frames,
         };
@@ -181,7 +217,8 @@ impl NonlocalPoseMeans {
             .chunks_mut(length * joints * 4)
             .zip(chunks_or_empty(moved_out, length * moved_columns))
             .collect();
-        let work = frames * joints * (20 + 2 * (reach.back.min(frames) + reach.ahead.min(frames)));
+        let others: usize = clips.iter().map(ClipView::frames).sum();
+        let work = frames * joints * (20 + 2 * (reach.back.min(frames) + reach.ahead.min(frames)) + others);
         let spare: Mutex<Vec<Buffers<T>>> = Mutex::default();
         let turned = parallel::map(tiles, work, |index, (out, moved_out)| {
             interrupt.check()?;
@@ -205,6 +242,11 @@ impl NonlocalPoseMeans {
         }
         Ok(())
     }
+}
+
+/// Whether a sample of a clip is missing.
+fn incomplete<T: Real>(clip: &ClipView<'_, T>) -> bool {
+    clip.data().as_chunks::<4>().0.iter().any(|q| quaternion::is_missing(*q))
 }
 
 /// Makes a clip sign-continuous from the hemisphere of `first`.

@@ -1,14 +1,15 @@
 //! One tile of frames: from quaternions to planes, weights, means, and back to quaternions.
 
+use super::candidates::Library;
 use super::kernels::{self, LANE};
 use super::likeness::Likeness;
 use super::means::Means;
-use super::nearest::Nearest;
 use super::path::{JointChart, Paths};
-use super::{NonlocalPoseMeans, Reach, Weights};
+use super::{NonlocalPoseMeans, Reach};
 use crate::clip::Planes;
 use crate::parallel::Interrupt;
 use crate::rotations::quaternion::conjugate_one;
+use crate::search::join::Scratch;
 use crate::window::{Boundary, Extended, extended_number};
 use crate::{Error, Real};
 use std::ops::Range;
@@ -30,6 +31,7 @@ pub(super) struct Clip<'a, T> {
     pub(super) paths: &'a Paths<T>,
     pub(super) confidence: Option<&'a [T]>,
     pub(super) translation: Option<&'a [T]>,
+    pub(super) library: Option<Library<T>>,
     pub(super) reach: Reach,
     pub(super) frames: usize,
 }
@@ -76,6 +78,7 @@ pub(super) struct Buffers<T> {
     forward: Planes<T>,
     backward: Planes<T>,
     rows: Vec<[T; 4]>,
+    scratch: Scratch<T>,
 }
 
 /// A tile and its surroundings, as planes.
@@ -155,16 +158,14 @@ impl<'a, T: Real> Tile<'a, T> {
     ) -> Result<bool, Error> {
         let joints = self.rows.len();
         let mut means = Means::new(&self, std::mem::take(&mut buffers.sums));
-        let groups: Vec<Range<usize>> = match self.clip.filter.weights {
-            Weights::Pose => std::iter::once(0..joints).collect(),
-            Weights::Joint => (0..joints).map(|joint| joint..joint + 1).collect(),
-        };
-        for group in groups {
+        for (index, group) in self.clip.filter.groups(joints).into_iter().enumerate() {
             means.begin(group.clone());
-            let mut likeness = Likeness::new(&self, group);
             match self.clip.filter.neighbors {
-                None => self.add_all(&mut likeness, &mut means, buffers, interrupt)?,
-                Some(count) => self.add_nearest(count, &mut likeness, &mut means, interrupt)?,
+                None => self.add_all(&mut Likeness::new(&self, group), &mut means, buffers, interrupt)?,
+                Some(count) => {
+                    let scratch = &mut buffers.scratch;
+                    self.add_nearest(count, index, group, &mut means, scratch, interrupt)?;
+                }
             }
             means.settle();
         }
@@ -172,26 +173,6 @@ impl<'a, T: Real> Tile<'a, T> {
         buffers.sums = means.into_sums();
         buffers.planes = self.planes;
         Ok(turned)
-    }
-
-    /// Adds the `count` most similar candidates of the window.
-    fn add_nearest(
-        &self,
-        count: usize,
-        likeness: &mut Likeness<'_, T>,
-        means: &mut Means<'_, T>,
-        interrupt: &Interrupt,
-    ) -> Result<(), Error> {
-        let mut nearest = Nearest::new(self.frames, count);
-        for lag in 1..=self.clip.reach.back {
-            interrupt.check()?;
-            for piece in self.pieces(lag) {
-                let exponents = likeness.exponents(lag, piece.pairs.clone());
-                nearest.offer(lag, &piece, exponents);
-            }
-        }
-        nearest.add_to(means);
-        Ok(())
     }
 
     /// Adds all candidates of the window, a block of lags at a time.

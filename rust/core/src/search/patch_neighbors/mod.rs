@@ -96,7 +96,7 @@ impl PatchNeighbors {
             units: weights,
             averaged: true,
         };
-        let poses = Poses::new(clip, scenes, interrupt)?;
+        let poses = Poses::new(clip, scenes, false, interrupt)?;
         for (tile, nearest) in
             self.nearest(&measure, &poses, clip, scenes, &lags, interrupt)?.iter().enumerate()
         {

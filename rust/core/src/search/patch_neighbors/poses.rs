@@ -40,10 +40,12 @@ impl<T: Real> Loaded<T> {
 }
 
 impl<T: Real> Poses<T> {
-    /// Looks through a clip, whose means are the centres, and through others.
+    /// Looks through a clip, whose means are the centres, and through others; `shared` asks for shares of samples even if
+    /// none is missing.
     pub(crate) fn new(
         clip: ClipView<'_, T>,
         others: &[ClipView<'_, T>],
+        shared: bool,
         interrupt: &Interrupt,
     ) -> Result<Self, Error> {
         let joints = clip.joints();
@@ -52,7 +54,7 @@ impl<T: Real> Poses<T> {
             .iter()
             .map(|centre| if centre[0].is_nan() { one } else { centre.map(T::from_f64) })
             .collect();
-        let mut complete = true;
+        let mut complete = !shared;
         let mut narrow = vec![true; joints];
         for clip in std::iter::once(&clip).chain(others) {
             let (samples, _) = clip.data().as_chunks::<4>();
@@ -75,7 +77,7 @@ impl<T: Real> Poses<T> {
         Ok(Self { centres, joints, complete })
     }
 
-    /// Whether no sample is missing.
+    /// Whether no sample is missing and no shares were asked for.
     pub(crate) fn complete(&self) -> bool {
         self.complete
     }

@@ -69,58 +69,6 @@ multiversion! {
 }
 
 multiversion! {
-    /// `to[i] = a[i] + a[i + shift]`.
-    fn add_shifted<T: Real>(to: &mut [T], a: &[T], shift: usize) {
-        let n = to.len();
-        let (a, b) = (&a[..n], &a[shift..shift + n]);
-        for i in 0..n {
-            to[i] = a[i] + b[i];
-        }
-    }
-}
-
-multiversion! {
-    /// `to += a`.
-    fn add_plane<T: Real>(to: &mut [T], a: &[T]) {
-        let n = to.len();
-        let a = &a[..n];
-        for i in 0..n {
-            to[i] += a[i];
-        }
-    }
-}
-
-/// Sums over a sliding window: `out[i] = values[i] + … + values[i + window − 1]`.
-///
-/// Windows are put together from sums over powers of two, so the cost hardly grows with the window, every sum is of
-/// positive terms only, and none runs on: a burst in one place leaves no error elsewhere. `values` is used up.
-pub(in super::super) fn sliding_sums<T: Real>(
-    values: &mut Vec<T>,
-    spare: &mut Vec<T>,
-    window: usize,
-    out: &mut [T],
-) {
-    let n = out.len();
-    out.fill(T::ZERO);
-    let (mut covered, mut power) = (0, 1);
-    loop {
-        if window & power != 0 {
-            add_plane(out, &values[covered..covered + n]);
-            covered += power;
-        }
-        if covered == window {
-            return;
-        }
-        let length = values.len() - power;
-        spare.resize(length, T::ZERO);
-        add_shifted(&mut spare[..length], values, power);
-        std::mem::swap(values, spare);
-        values.truncate(length);
-        power *= 2;
-    }
-}
-
-multiversion! {
     /// Patch distances to exponents: divided by three times the share that entered; infinite where nothing did.
     pub(in super::super) fn divide_by_shares<T: Real>(e: &mut [T], shares: &[T]) {
         let n = e.len();

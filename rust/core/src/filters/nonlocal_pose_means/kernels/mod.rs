@@ -6,9 +6,10 @@ mod sums;
 pub(super) use crate::filters::samples::{
     LANE, copy_signed, load_fixed, load_local, store_fixed, store_local, turns,
 };
+pub(super) use crate::search::kernels::sliding_sums;
 pub(super) use distances::{
     FARTHEST, add_lengths, add_shares, add_squares, divide_by_shares, exclude_without_shares,
-    multiply_planes, pair_logs, sliding_sums, weigh,
+    multiply_planes, pair_logs, weigh,
 };
 pub(super) use sums::{Lags, accumulate, add_products, note_weights, settle, settle_local};
 

@@ -1,0 +1,174 @@
+//! The most similar candidates of each frame of a tile, in the clip and in a library, found by the patch search.
+
+use super::kernels::{FARTHEST, SHIFT};
+use super::means::Means;
+use super::path::JointChart;
+use super::tile::Tile;
+use super::{Distance, NonlocalPoseMeans, Reach};
+use crate::parallel::Interrupt;
+use crate::search::diagonal::Measure;
+use crate::search::features::{Features, Joint, Kind, Side};
+use crate::search::join::{Join, Lags, Scratch};
+use crate::search::nearest::{Nearest, Ties};
+use crate::search::patch_neighbors::{Loaded, Poses};
+use crate::search::spread::{MARGIN, Spreads};
+use crate::{ClipView, Error, Real};
+use std::ops::Range;
+
+/// The largest factor of a squared difference: sums of such products stay finite in float32 too.
+const LARGEST_FACTOR: f64 = 1e30;
+
+/// Coordinates of a rotation: what a pair of samples counts in the divisor of a mean.
+const COORDINATES: f64 = 3.0;
+
+/// Frames from which it pays to look for diagonals that do not matter.
+const MANY_FRAMES: usize = 64;
+
+/// Clips whose frames are candidates of every frame.
+#[derive(Debug)]
+pub(super) struct Library<T> {
+    scenes: Vec<Scene<T>>,
+    frames: usize,
+}
+
+/// A clip of the library.
+#[derive(Debug)]
+struct Scene<T> {
+    loaded: Loaded<T>,
+    frames: usize,
+    /// Its first frame, counted through the library.
+    first: usize,
+    /// One for each group of joints that share weights, where samples are complete.
+    spreads: Vec<Spreads<T>>,
+}
+
+impl<T: Real> Library<T> {
+    /// Loads clips; `shared` tells whether samples of the filtered clip have confidences.
+    pub(super) fn new(
+        filter: &NonlocalPoseMeans,
+        clip: ClipView<'_, T>,
+        clips: &[ClipView<'_, T>],
+        shared: bool,
+        reach: Reach,
+        groups: &[Range<usize>],
+        interrupt: &Interrupt,
+    ) -> Result<Self, Error> {
+        let poses = Poses::new(clip, clips, shared, interrupt)?;
+        let pad = reach.before + MARGIN;
+        let (mut scenes, mut frames) = (Vec::with_capacity(clips.len()), 0);
+        for clip in clips.iter().filter(|clip| clip.frames() > 0) {
+            let mut loaded = Loaded::default();
+            poses.load(*clip, 0..clip.frames(), pad, &mut loaded);
+            let side = Side { features: loaded.features(), at: pad, first: 0, count: clip.frames() };
+            let spreads = if poses.complete() {
+                groups
+                    .iter()
+                    .map(|group| Spreads::new(&filter.measure(group.clone(), reach), &side, interrupt))
+                    .collect::<Result<_, _>>()?
+            } else {
+                Vec::new()
+            };
+            scenes.push(Scene { loaded, frames: clip.frames(), first: frames, spreads });
+            frames += clip.frames();
+        }
+        Ok(Self { scenes, frames })
+    }
+
+    /// Planes of a joint of the scene that holds a frame, the frame's column, and how far the sample counts.
+    pub(super) fn sample(&self, frame: usize, joint: usize, before: usize) -> ([T; 4], T) {
+        let scene = &self.scenes[self.scenes.partition_point(|scene| scene.first <= frame) - 1];
+        let column = before + MARGIN + frame - scene.first;
+        let features = scene.loaded.features();
+        let q = features.planes.rows_from::<4>(features.joints[joint].row).map(|q| q[column]);
+        (q, features.shares.map_or(T::ONE, |shares| shares.row(joint)[column]))
+    }
+}
+
+impl NonlocalPoseMeans {
+    /// How patches of some joints are compared: by the square roots of the exponents.
+    pub(super) fn measure<T: Real>(&self, joints: Range<usize>, reach: Reach) -> Measure<T> {
+        let factor = |bandwidth: &f64| T::from_f64((0.5 / bandwidth.powi(2)).min(LARGEST_FACTOR));
+        Measure {
+            before: reach.before,
+            after: reach.after,
+            factors: self.bandwidth.iter().map(factor).collect(),
+            units: vec![T::from_f64(COORDINATES); self.bandwidth.len()],
+            joints,
+            averaged: self.distance == Distance::Mean,
+        }
+    }
+}
+
+impl<T: Real> Tile<'_, T> {
+    /// Adds the `count` most similar candidates of the window and the library, for a group of joints.
+    pub(super) fn add_nearest(
+        &self,
+        count: usize,
+        group: usize,
+        joints: Range<usize>,
+        means: &mut Means<'_, T>,
+        scratch: &mut Scratch<T>,
+        interrupt: &Interrupt,
+    ) -> Result<(), Error> {
+        let reach = self.clip.reach;
+        let measure = self.clip.filter.measure(joints, reach);
+        let kinds: Vec<Joint> = self
+            .rows
+            .iter()
+            .zip(&self.clip.paths.charts)
+            .map(|(&row, chart)| Joint {
+                row,
+                kind: if *chart == JointChart::Local { Kind::Wide } else { Kind::Vector },
+            })
+            .collect();
+        let measure = measure.halved(&kinds);
+        let features = Features { planes: &self.planes, joints: &kinds, shares: self.confidence.as_ref() };
+        let library = self.clip.library.as_ref();
+        let others = library.map_or(0, |library| library.frames);
+        let count = count.min(reach.back + reach.ahead + others);
+        let mut nearest = Nearest::new(self.at, self.frames, count, Ties::Nearer);
+        let frames = Side { features, at: self.at, first: self.at, count: self.frames };
+        let candidates = Side {
+            features,
+            at: self.candidates.start,
+            first: self.candidates.start,
+            count: self.candidates.len(),
+        };
+        let far = !reach.added && features.shares.is_none() && self.frames >= MANY_FRAMES;
+        let spreads = if far && self.candidates.start >= reach.before + MARGIN {
+            Some(Spreads::new(&measure, &candidates, interrupt)?)
+        } else {
+            None
+        };
+        let lags = Lags { within: -reach.back.cast_signed()..=reach.ahead.cast_signed(), without: 0..=0 };
+        let window = Join { measure: &measure, frames, candidates, lags, spreads: spreads.as_ref() };
+        window.run(&mut nearest, scratch, interrupt)?;
+        // Frames of the library come after all columns.
+        let beyond = self.planes.length();
+        for scene in library.iter().flat_map(|library| &library.scenes) {
+            let candidates = Side {
+                features: scene.loaded.features(),
+                at: reach.before + MARGIN,
+                first: beyond + scene.first,
+                count: scene.frames,
+            };
+            let spreads = if self.frames >= MANY_FRAMES { scene.spreads.get(group) } else { None };
+            let join = Join { measure: &measure, frames, candidates, lags: Lags::all(), spreads };
+            join.run(&mut nearest, scratch, interrupt)?;
+        }
+        for frame in 0..self.frames {
+            for (distance, number) in nearest.of(frame) {
+                let exponent = distance * distance;
+                if exponent > T::from_f64(FARTHEST) {
+                    break;
+                }
+                let weight = (T::from_f64(SHIFT) - exponent).exp();
+                match number.checked_sub(beyond) {
+                    Some(other) => means.add_other(frame, other, weight),
+                    None => means.add_one(frame, number, weight),
+                }
+            }
+        }
+        Ok(())
+    }
+}
