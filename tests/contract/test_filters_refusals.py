@@ -138,6 +138,7 @@ WRONG_OPTIONS = [
     ("gaps", "drop", ValueError, "expected one of 'fill', 'keep', 'raise', got 'drop'"),
     ("gaps", True, ValueError, "expected one of 'fill', 'keep', 'raise', got True"),
     ("library", [], ValueError, "expected a clip or a list of at least one, got none"),
+    ("library", np.ones((5, 3)), ValueError, "expected shape (..., 4), got (5, 3)"),
     ("max_gap", -1, ValueError, f"{NOT_NEGATIVE}, got -1"),
     ("max_gap", math.nan, ValueError, f"{NOT_NEGATIVE}, got nan"),
     ("max_gap", "1 s", TypeError, f"{NOT_NEGATIVE}, got str"),

@@ -250,3 +250,68 @@ def test_an_untrusted_frame_follows_others_however_faint_down_to_one_limit(
         backend, q, confidence=confidence, bandwidth=bandwidth, neighbors=neighbors, **chosen
     )
     assert clips.angles(result[3], q[2] if moves else q[3]) < tolerances.filtered(dtype)
+
+
+# ---- a library
+
+
+def with_library(backend, q, library, **options):
+    return nlpm.rotations(backend, q, library=library, **{"chart": "local", "neighbors": 5} | options)
+
+
+def repeated(seed):
+    """Return a walk, the same with noise, other takes of it, and a source of random numbers."""
+    rng = np.random.default_rng(seed)
+    whole = clips.walk(rng, 400, 2)
+    return whole[:120], clips.noisy(rng, whole[:120], 0.2), [whole[120:260], whole[260:]], rng
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_clean_takes_of_the_same_motion_take_the_noise_away(backend, seed):
+    rng = np.random.default_rng(seed)
+    whole = clips.walk(rng, 400, 8)
+    clean, noisy = whole[:120], clips.noisy(rng, whole[:120], 0.2)
+    options = {"bandwidth": 0.2, "search_radius": 10, "patch_radius": 5}
+    alone = nlpm.rotations(backend, noisy, **options)
+    result = with_library(backend, noisy, [whole[120:260], whole[260:]], **options, neighbors=20)
+    inside = slice(10, -10)
+    assert clips.angles(result, clean)[inside].mean() < 0.4 * clips.angles(alone, clean)[inside].mean()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_library_may_be_cut_and_ordered_and_signed_as_one_likes(backend, seed):
+    _, noisy, library, rng = repeated(seed)
+    expected = with_library(backend, noisy, library)
+    for other in (library[::-1], [clips.flipped(rng, clip) for clip in library]):
+        assert clips.angles(with_library(backend, noisy, other), expected).max() < tolerances.FLOAT64
+    left, right = clips.random_rotations(rng, 2, 2)
+    moved = [clips.product(clips.product(left, clip), right) for clip in (noisy, *library)]
+    result = clips.product(clips.product(left, expected), right)
+    assert clips.angles(with_library(backend, moved[0], moved[1:]), result).max() < tolerances.FLOAT64
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_is_missing_in_a_library_or_unlike_changes_nothing(backend, seed):
+    _, noisy, library, rng = repeated(seed)
+    expected = with_library(backend, noisy, library)
+    gone = np.full((30, 2, 4), np.nan)
+    far = clips.product(noisy[:40], clips.from_vectors(np.array([3.0, 0, 0])))
+    for more in ([gone, *library], [*library, far]):
+        assert clips.angles(with_library(backend, noisy, more), expected).max() < tolerances.FLOAT64
+    alone = nlpm.rotations(backend, noisy, chart="local", neighbors=5)
+    assert clips.angles(with_library(backend, noisy, [gone]), alone).max() < tolerances.FLOAT64
+    tiny = with_library(backend, noisy, library, bandwidth=1e-6)
+    assert clips.angles(tiny, noisy).max() < tolerances.FLOAT64
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_library_weighs_nothing_in_the_translation(backend, seed):
+    clean, _, library, rng = repeated(seed)
+    path = clips.path(rng, 120)
+    options = {"chart": "local", "translation": path, "neighbors": 300, "bandwidth": 0.5}
+    alone = nlpm.positions(backend, clean, **options)
+    far = [clips.product(clean[:40], clips.from_vectors(np.array([0.9, 0, 0])))]
+    # Its weights are smaller than those of neighbours in time: the frame's own stays what it was.
+    np.testing.assert_allclose(
+        nlpm.positions(backend, clean, **options, library=far), alone, rtol=0, atol=tolerances.FLOAT64
+    )

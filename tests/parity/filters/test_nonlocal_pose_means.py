@@ -228,3 +228,31 @@ def test_missing_samples(q, gaps, max_gap, chart, weights, bandwidth):
 def test_missing_samples_and_confidence(q, seed):
     confidence = clips.confidences(np.random.default_rng(seed), *q.shape[:2])
     with_both(q, confidence=confidence, bandwidth=0.1, lookahead=2)
+
+
+@given(seed=seeds, dtype=st.sampled_from(DTYPES), options=nlpm.options(neighbors=False), count=st.sampled_from([1, 3, 40]))
+def test_a_library(seed, dtype, options, count):
+    rng = np.random.default_rng(seed)
+    q = clips.noisy(rng, clips.smooth(rng, 100, 2), 0.05)
+    library = [clips.noisy(rng, q[10:60], 0.05), q[50:51], clips.smooth(rng, 30, 2)]
+    confidence = clips.confidences(rng, 70, 2) if rng.random() < 0.5 else None
+    if rng.random() < 0.5:
+        drawn.spoil(rng, library[0], 0.2)
+    agree(
+        q[:70].astype(dtype),
+        **options | {"neighbors": count, "chart": "local"},
+        library=library,
+        confidence=confidence,
+        translation=clips.path(rng, 70),
+    )
+
+
+@pytest.mark.parametrize("dtype", DTYPES)
+@pytest.mark.parametrize("weights", ["pose", "joint"])
+def test_the_whole_clip_and_a_library_with_much_to_pass_over(dtype, weights):
+    rng = np.random.default_rng(5)
+    q = clips.noisy(rng, clips.walk(rng, 700, 2), 0.02).astype(dtype)
+    options = {"neighbors": 6, "search_radius": -1, "weights": weights, "bandwidth": 0.1}
+    agree(q[:400], **options)
+    agree(q[:400], **options, boundary="mirror", lookahead=20)
+    agree(q[:400], **options, chart="local", library=[q[400:], q[:90]])
