@@ -177,7 +177,7 @@ def _refuse_early(steps: Sequence[Step], rotations: Array) -> None:
     clip, _ = _validation.clip(rotations)
     frames, joints = clip.shape[:2]
     for step in steps:
-        settings = {**step.settings, "scalar_first": True}
+        settings = _settings(step)
         _validation.choice(settings["gaps"], "gaps", GAPS)
         if "confidence" in settings:
             _validation.confidence(settings["confidence"], frames, joints, clip.dtype)
@@ -185,10 +185,21 @@ def _refuse_early(steps: Sequence[Step], rotations: Array) -> None:
         step.method.with_translation(clip[:0], None, **settings)
 
 
+def _settings(step: Step) -> dict[str, Any]:
+    """Return all that the filter takes by name, for rotations that are scalar first by now."""
+    settings = {**step.settings, "scalar_first": True}
+    if settings.get("library") is not None and not step.settings["scalar_first"]:
+        several = isinstance(settings["library"], (list, tuple))
+        clips = settings["library"] if several else [settings["library"]]
+        clips = [_validation.quaternions(clip, "library", scalar_first=False) for clip in clips]
+        settings["library"] = clips if several else clips[0]
+    return settings
+
+
 def _filtered(
     step: Step, gaps: str, rotations: Array, translation: Array | None
 ) -> tuple[Array, Array | None]:
-    settings = {**step.settings, "gaps": gaps, "scalar_first": True}
+    settings = {**_settings(step), "gaps": gaps}
     # A pose that comes back after a while comes back elsewhere.
     anywhere = "search_radius" in settings and settings["search_radius"] is None
     if translation is None or anywhere:

@@ -112,3 +112,43 @@ def test_confidence_per_frame_and_without_a_number():
     unknown = np.where(trust == 0, np.nan, trust)
     expected = qf.nonlocal_pose_means(q, confidence=trust)
     np.testing.assert_array_equal(qf.nonlocal_pose_means(q, confidence=unknown), expected)
+
+
+def test_a_library_is_a_clip_or_a_list_of_clips():
+    rng = np.random.default_rng(0)
+    q, other = clips.noisy(rng, clips.smooth(rng, 40, 3), 0.1), clips.smooth(rng, 30, 3)
+    result = qf.nonlocal_pose_means(q, library=[other, q])
+    np.testing.assert_array_equal(
+        qf.nonlocal_pose_means(q, library=np.concatenate([other])),
+        qf.nonlocal_pose_means(q, library=(other,)),
+    )
+    np.testing.assert_array_equal(
+        result, qf.nonlocal_pose_means(q, library=[other, q], chart="local", neighbors=32)
+    )
+    last = [np.roll(clip, -1, axis=-1) for clip in (q, other)]
+    found = qf.nonlocal_pose_means(last[0], library=[last[1], last[0]], scalar_first=False)
+    np.testing.assert_array_equal(np.roll(found, 1, axis=-1), result)
+    chain = {"method": "nonlocal_pose_means", "library": [last[1], last[0]], "scalar_first": False}
+    np.testing.assert_array_equal(np.roll(qf.denoise(last[0], **chain), 1, axis=-1), result)
+    single = qf.nonlocal_pose_means(q[:, 0], library=other[:, 0])
+    np.testing.assert_array_equal(single, qf.nonlocal_pose_means(q[:, :1], library=other[:, :1])[:, 0])
+    gaps = q.copy()
+    gaps[10:15, 1] = np.nan
+    gaps[20:, 2] = np.nan
+    kept = qf.nonlocal_pose_means(gaps, library=[other], gaps="keep", max_gap=8)
+    np.testing.assert_array_equal(np.isnan(kept), np.isnan(gaps))
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"library": ()}, "library: expected a clip or a list of at least one, got none"),
+        ({"library": [np.ones((4, 2, 4)) / 2]}, "library[0]: expected 3 joints as in the clip, got 2"),
+        ({"library": np.ones((4, 3, 4)) / 2, "chart": "identity"}, "chart: expected 'mean' or 'local' with a library, got 'identity'"),
+    ],
+)  # fmt: skip
+def test_what_a_library_does_not_go_with_is_named(options, message):
+    q = clips.smooth(np.random.default_rng(2), 30, 3)
+    with pytest.raises(ValueError) as caught:
+        qf.nonlocal_pose_means(q, **options)
+    assert str(caught.value) == message

@@ -104,6 +104,31 @@ def test_words_that_are_values(folder, tmp_path):
     same(output, expected)
 
 
+def test_a_library_comes_from_files(folder, tmp_path):
+    output = tmp_path / "out.npz"
+    words = ["--method", "nonlocal_pose_means", "--neighbors", "8"]
+    words += ["--library", folder / "truth.npz", "--library", folder / "short.npz"]
+    done = run("denoise", folder / "noisy.npz", "-o", output, *words, "--json")
+    noisy, *clean = (qf.read_motion(folder / f"{name}.npz") for name in ("noisy", "truth", "short"))
+    library = [motion.rotations for motion in clean]
+    same(output, qf.denoise(noisy, method="nonlocal_pose_means", neighbors=8, library=library))
+    record = json.loads(done.stdout)
+    assert record["library"] == [str(folder / "truth.npz"), str(folder / "short.npz")]
+    assert "library" not in record["steps"][0]
+
+
+def test_a_library_at_another_rate_is_resampled(folder, tmp_path):
+    output, slow = tmp_path / "out.npz", tmp_path / "slow.npz"
+    noisy, truth = (qf.read_motion(folder / f"{name}.npz") for name in ("noisy", "truth"))
+    qf.write_motion(
+        slow, truth.replace(rotations=truth.rotations[::2], translation=truth.translation[::2], fps=60)
+    )
+    words = ["--method", "nonlocal_pose_means", "--library", slow]
+    run("denoise", folder / "noisy.npz", "-o", output, *words)
+    library = qf.resample(truth.rotations[::2], fps=60, new_fps=truth.fps)
+    same(output, qf.denoise(noisy, method="nonlocal_pose_means", library=library))
+
+
 @pytest.mark.parametrize("file", ["trust.npy", "trust.csv"])
 def test_confidence_comes_from_a_file(folder, tmp_path, file):
     output = tmp_path / "out.npz"
@@ -202,6 +227,8 @@ BAD = [
     (["--report", "report.gif"], "--report: expected .png, .pdf, .svg, .json or .txt, got .gif, or -"),
     (["--reference", "short.npz"], "expected the same number of frames, got 120 and 180"),
     (["--reference", "absent.npz"], "absent.npz: No such file or directory"),
+    (["--library", "short.npz"], "library: expected an option of despike ("),
+    (["--method", "nonlocal_pose_means", "--library", "absent.npz"], "absent.npz: No such file or directory"),
     (["--confidence", "absent.npy"], "absent.npy: No such file or directory"),
     (["--confidence", "words.txt"], "words.txt: expected numbers, got "),
     (["--confidence", "noisy.npz"], "noisy.npz: expected numbers, got "),

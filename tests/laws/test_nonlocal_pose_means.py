@@ -292,7 +292,7 @@ def test_a_library_may_be_cut_and_ordered_and_signed_as_one_likes(backend, seed)
 
 @pytest.mark.parametrize("seed", range(3))
 def test_what_is_missing_in_a_library_or_unlike_changes_nothing(backend, seed):
-    _, noisy, library, rng = repeated(seed)
+    _, noisy, library, _ = repeated(seed)
     expected = with_library(backend, noisy, library)
     gone = np.full((30, 2, 4), np.nan)
     far = clips.product(noisy[:40], clips.from_vectors(np.array([3.0, 0, 0])))
@@ -306,7 +306,7 @@ def test_what_is_missing_in_a_library_or_unlike_changes_nothing(backend, seed):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_a_library_weighs_nothing_in_the_translation(backend, seed):
-    clean, _, library, rng = repeated(seed)
+    clean, _, _, rng = repeated(seed)
     path = clips.path(rng, 120)
     options = {"chart": "local", "translation": path, "neighbors": 300, "bandwidth": 0.5}
     alone = nlpm.positions(backend, clean, **options)

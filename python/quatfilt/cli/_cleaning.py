@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from quatfilt._typing import Array
 from quatfilt.cli import _options, _steps
+from quatfilt.cli.compare import refuse_other_joints
 from quatfilt.denoise import denoise
 from quatfilt.errors import FileAccessError
 from quatfilt.formats.files import write_motion
@@ -17,6 +19,7 @@ from quatfilt.motion.defects import find_defects
 from quatfilt.motion.metrics import angle_error
 from quatfilt.motion.motion import Motion
 from quatfilt.noise.noise import noise_level
+from quatfilt.rotations.resample import resample
 
 Busy = Callable[[str], contextlib.AbstractContextManager[None]]
 """Shows what is going on."""
@@ -33,6 +36,8 @@ class How:
     skeleton: Path | None = None
     first_frame: str = "auto"
     confidence: Path | None = None
+    library: tuple[Path, ...] = ()
+    """Clean motions of the same joints, which the filters may borrow from."""
 
 
 @dataclass(frozen=True)
@@ -83,6 +88,9 @@ def clean(source: Path, target: Path, motion: Motion, how: How, *, busy: Busy = 
     options = dict(how.wish)
     if how.confidence is not None:
         options["confidence"] = _steps.read_confidence(how.confidence, *motion.rotations.shape[:2])
+    if how.library:
+        with busy("reading the library"):
+            options["library"] = [_borrowed(path, source, motion, how) for path in how.library]
     started = time.perf_counter()
     with busy(f"cleaning {source.name}"):
         result = denoise(motion, translation=how.translation, **options)
@@ -94,7 +102,18 @@ def clean(source: Path, target: Path, motion: Motion, how: How, *, busy: Busy = 
         "output": str(target),
         "steps": _steps.described(_steps.planned(how.wish)),
     }
+    if how.library:
+        record["library"] = [str(path) for path in how.library]
     return Cleaned(motion, result, {**record, **_measured(motion, result), "seconds": seconds})
+
+
+def _borrowed(path: Path, source: Path, motion: Motion, how: How) -> Array:
+    """Return the rotations of a clean motion of the same joints, at the frame rate of the one that is cleaned."""
+    clean = _options.read(path, fps=None, skeleton=how.skeleton, first_frame=how.first_frame)
+    refuse_other_joints(path, clean, source, motion)
+    if clean.fps == motion.fps or len(clean) == 0:
+        return clean.rotations
+    return resample(clean.rotations, fps=clean.fps, new_fps=motion.fps)
 
 
 def _measured(motion: Motion, result: Motion) -> dict[str, Any]:

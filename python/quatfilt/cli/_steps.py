@@ -51,6 +51,10 @@ _WORDS: Mapping[str, Any] = {"none": None, "all": None, "true": True, "false": F
 """Words with a meaning of their own; "all" is that of a search without a radius."""
 
 
+_FROM_FILES = ("confidence", "library")
+"""Options whose values are read from files, which are named elsewhere in a record."""
+
+
 def asked(
     method: Sequence[str] | None, preset: str | None, option: Sequence[str] | None, flags: Mapping[str, Any]
 ) -> dict[str, Any]:
@@ -113,7 +117,7 @@ def described(steps: Sequence[Step]) -> list[dict[str, Any]]:
     return [
         {
             "method": step.name,
-            **{name: value for name, value in step.chosen.items() if name != "confidence"},
+            **{name: value for name, value in step.chosen.items() if name not in _FROM_FILES},
         }
         for step in steps
     ]

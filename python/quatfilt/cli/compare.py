@@ -62,6 +62,20 @@ def compare(
 
 def refuse_others(path_a: Path, a: Motion, path_b: Path, b: Motion) -> None:
     """Refuse motions that are not of the same joints, frames and rate."""
+    refuse_other_joints(path_a, a, path_b, b)
+    if len(a) != len(b):
+        raise ValueError(
+            f"{path_a} and {path_b}: expected the same number of frames, got {len(a)} and {len(b)}"
+        )
+    if abs(a.fps - b.fps) > _SAME_RATE * a.fps:
+        raise ValueError(
+            f"{path_a} and {path_b}: expected the same frame rate, got {a.fps:g} and {b.fps:g}; "
+            "--fps says what it is"
+        )
+
+
+def refuse_other_joints(path_a: Path, a: Motion, path_b: Path, b: Motion) -> None:
+    """Refuse motions that are not of the same joints."""
     names, found = a.skeleton.names, b.skeleton.names
     if names != found:
         missing = [name for name in names if name not in found]
@@ -72,15 +86,6 @@ def refuse_others(path_a: Path, a: Motion, path_b: Path, b: Motion) -> None:
             f"; {path_b.name} lacks {', '.join(missing[:3])}{', …' * (len(missing) > 3)}" if missing else ""
         )
         raise ValueError(f"{path_a} and {path_b}: expected the same joints, got {detail}{named}")
-    if len(a) != len(b):
-        raise ValueError(
-            f"{path_a} and {path_b}: expected the same number of frames, got {len(a)} and {len(b)}"
-        )
-    if abs(a.fps - b.fps) > _SAME_RATE * a.fps:
-        raise ValueError(
-            f"{path_a} and {path_b}: expected the same frame rate, got {a.fps:g} and {b.fps:g}; "
-            "--fps says what it is"
-        )
 
 
 def in_one_unit(a: Motion, b: Motion) -> tuple[Motion, Motion]:

@@ -59,6 +59,14 @@ def denoise(
     neighbors: Annotated[
         int | None, typer.Option(metavar="N", help="Only the N most similar poses count. [default: all]")
     ] = None,
+    library: Annotated[
+        list[Path] | None,
+        typer.Option(
+            metavar="FILE",
+            help="A clean motion of the same person to borrow similar poses from. May be given several times.",
+            show_default=False,
+        ),
+    ] = None,
     gaps: _steps.Gaps = None,
     max_gap: _steps.MaxGap = None,
     confidence: Annotated[
@@ -110,10 +118,10 @@ def denoise(
             "max_gap": max_gap,
         },
     )
-    _steps.planned(wish)
+    _steps.planned({**wish, "library": None} if library else wish)
     wanted = reports or []
     _refuse_others(wanted)
-    how = _cleaning.How(wish, translation, fps, skeleton, first_frame, confidence)
+    how = _cleaning.How(wish, translation, fps, skeleton, first_frame, confidence, tuple(library or ()))
     target = output or beside(path)
     with _output.busy(f"reading {path.name}"):
         motion = _cleaning.read(path, target, how)

@@ -230,7 +230,12 @@ def test_missing_samples_and_confidence(q, seed):
     with_both(q, confidence=confidence, bandwidth=0.1, lookahead=2)
 
 
-@given(seed=seeds, dtype=st.sampled_from(DTYPES), options=nlpm.options(neighbors=False), count=st.sampled_from([1, 3, 40]))
+@given(
+    seed=seeds,
+    dtype=st.sampled_from(DTYPES),
+    options=nlpm.options(neighbors=False),
+    count=st.sampled_from([1, 3, 40]),
+)
 def test_a_library(seed, dtype, options, count):
     rng = np.random.default_rng(seed)
     q = clips.noisy(rng, clips.smooth(rng, 100, 2), 0.05)
@@ -238,6 +243,7 @@ def test_a_library(seed, dtype, options, count):
     confidence = clips.confidences(rng, 70, 2) if rng.random() < 0.5 else None
     if rng.random() < 0.5:
         drawn.spoil(rng, library[0], 0.2)
+    library = [library, [q[:0]], [q[:0], *library]][rng.integers(3)]
     agree(
         q[:70].astype(dtype),
         **options | {"neighbors": count, "chart": "local"},

@@ -2,8 +2,8 @@
 //!
 //! With complete samples a patch distance `D` obeys the triangle inequality: no candidate within `h` frames of `s` is nearer
 //! to `t` than `D(t, s) − S_h(s)`, where `S_h(s)` is the largest distance from `s` to a patch at most `h` frames away. So one
-//! diagonal in 27 is measured for all frames. Where the bound lies beyond the nearest candidates that are known, the 26
-//! diagonals around it are passed over; elsewhere the same is asked of blocks of 9 and of 3. Nothing is lost: what is kept is
+//! diagonal in 81 is measured for all frames. Where the bound lies beyond the nearest candidates that are known, the 80
+//! diagonals around it are passed over; elsewhere the same is asked of blocks of 27, of 9 and of 3. Nothing is lost: what is kept is
 //! what measuring all diagonals would have kept, to the last bit.
 
 use super::diagonal::{Diagonal, Measure};
@@ -49,7 +49,7 @@ pub(crate) struct Scratch<T> {
     diagonal: Diagonal<T>,
     marks: Vec<u8>,
     distances: Vec<T>,
-    /// Distances of the middle diagonal of each block of 27.
+    /// Distances of the middle diagonal of each of the widest blocks.
     coarse: Planes<T>,
     /// Those of diagonals within blocks, per level.
     fine: [Vec<T>; HALVES.len()],

@@ -6,8 +6,8 @@ use super::kernels;
 use crate::parallel::{self, Interrupt};
 use crate::{Error, Real};
 
-/// Half widths of the blocks of diagonals that are passed over together: blocks of 27 hold three of 9, those three of 3.
-pub(crate) const HALVES: [usize; 3] = [13, 4, 1];
+/// Half widths of the blocks of diagonals that are passed over together: blocks of 81 hold three of 27, and so on down to 3.
+pub(crate) const HALVES: [usize; 4] = [40, 13, 4, 1];
 
 /// Frames by which planes must reach beyond patches for [`Spreads::new`].
 pub(crate) const MARGIN: usize = HALVES[0];
@@ -30,13 +30,15 @@ impl<T: Real> Spreads<T> {
     ) -> Result<Self, Error> {
         let (start, count) = (side.at - MARGIN, side.count + 2 * MARGIN);
         let mut levels: [Vec<T>; HALVES.len()] = std::array::from_fn(|_| vec![T::ZERO; count]);
-        let [widest, middle, narrow] = levels.each_mut().map(|level| level.chunks_mut(TASK_FRAMES));
-        let tasks: Vec<_> = widest.zip(middle).zip(narrow).collect();
+        let mut parts = levels.each_mut().map(|level| level.chunks_mut(TASK_FRAMES));
+        let tasks: Vec<[&mut [T]; HALVES.len()]> = (0..count.div_ceil(TASK_FRAMES))
+            .map(|_| parts.each_mut().map(|part| part.next().unwrap_or_default()))
+            .collect();
         let work = count * MARGIN * measure.joints.len() * 4;
-        parallel::for_each(tasks, work, |task, ((widest, middle), narrow)| {
+        parallel::for_each(tasks, work, |task, mut levels| {
             interrupt.check()?;
             let from = task * TASK_FRAMES;
-            let to = from + widest.len();
+            let to = from + levels[0].len();
             let (mut diagonal, mut distances) = (Diagonal::default(), Vec::new());
             for lag in 1..=MARGIN {
                 // Pairs that begin or end in the task's frames.
@@ -48,7 +50,7 @@ impl<T: Real> Spreads<T> {
                 let own = &distances[(from - first).min(distances.len())..];
                 let ending = to.saturating_sub(lag).saturating_sub(first).min(distances.len());
                 let (later, shift) = (&distances[..ending], first + lag - from);
-                for (half, level) in HALVES.iter().zip([&mut *widest, &mut *middle, &mut *narrow]) {
+                for (half, level) in HALVES.iter().zip(&mut levels) {
                     if lag <= *half {
                         kernels::keep_largest(&mut level[..own.len()], own);
                         kernels::keep_largest(&mut level[shift..shift + later.len()], later);

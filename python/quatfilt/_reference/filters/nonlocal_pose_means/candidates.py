@@ -135,15 +135,15 @@ def nearest_candidates(clip: Clip, how: Comparison, neighbors: int, library: Pos
         with_this = np.concatenate([lags[t], np.full(found.shape, lag)], axis=-1)
         lags[t] = np.take_along_axis(with_this, order, axis=-1)
     if library is not None:
-        for t in range(clip.frames):
-            found = library_distances(clip, how, library, t).T
-            distances = np.concatenate([smallest[t], found], axis=-1)
+        for frame in range(clip.frames):
+            found = library_distances(clip, how, library, frame).T
+            distances = np.concatenate([smallest[frame], found], axis=-1)
             order = np.argsort(distances, axis=-1, kind="stable")[..., :neighbors]
-            smallest[t] = np.take_along_axis(distances, order, axis=-1)
+            smallest[frame] = np.take_along_axis(distances, order, axis=-1)
             none, all_of_them = (
                 np.zeros(found.shape, np.intp),
                 np.broadcast_to(np.arange(found.shape[1]), found.shape),
             )
-            lags[t] = np.take_along_axis(np.concatenate([lags[t], none], axis=-1), order, axis=-1)
-            others[t] = np.take_along_axis(np.concatenate([others[t], all_of_them], axis=-1), order, axis=-1)
+            lags[frame] = np.take_along_axis(np.concatenate([lags[frame], none], axis=-1), order, axis=-1)
+            others[frame] = np.take_along_axis(np.concatenate([others[frame], all_of_them], axis=-1), order, axis=-1)
     return Kept(lags, others, smallest)

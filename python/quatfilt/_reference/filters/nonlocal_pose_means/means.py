@@ -27,7 +27,7 @@ def average(clip: Clip, how: Comparison, kept: Kept | None, library: Poses | Non
     """Weighted means of the rotations, `(frames, joints, 4)`, and of the positions, `(frames, 3)`."""
     joints = len(how.bandwidth)
     own = clip.padding + np.arange(clip.frames)
-    largest = np.zeros((clip.frames, how.columns))
+    largest: Reals = np.zeros((clip.frames, how.columns))
     total = np.zeros((clip.frames, joints))
     turn = np.zeros((clip.frames, joints, 3))
     shift = np.zeros((clip.frames, 3))
@@ -43,13 +43,13 @@ def average(clip: Clip, how: Comparison, kept: Kept | None, library: Poses | Non
         turn[t] += weight[..., None] * clip.chart.differences(here, there)
         shift[t] += weight[:, :1] * (clip.translation[there] - clip.translation[here])
     moved_total = total[:, :1].copy()
-    if kept is not None and library is not None:
+    if kept is not None and library is not None and len(library.middles):
         for place in range(kept.others.shape[-1]):
             number = np.broadcast_to(kept.others[..., place], (clip.frames, joints))
-            weights = np.where(kept.others[..., place] < 0, 0, likeness(kept.distances[..., place]))
-            largest = np.maximum(largest, weights)
+            borrowed = np.where(kept.others[..., place] < 0, 0, likeness(kept.distances[..., place]))
+            largest = np.maximum(largest, borrowed)
             frame = library.middles[number]
-            weight = weights * library.present[frame, np.arange(joints)]
+            weight = borrowed * library.present[frame, np.arange(joints)]
             total += weight
             rotations = library.rotations[frame, np.arange(joints)]
             turn += weight[..., None] * 2 * log_short(between(clip.chart.rotations[own], rotations))

@@ -22,7 +22,7 @@ const LARGEST_FACTOR: f64 = 1e30;
 const COORDINATES: f64 = 3.0;
 
 /// Frames from which it pays to look for diagonals that do not matter.
-const MANY_FRAMES: usize = 64;
+const MANY_FRAMES: usize = 128;
 
 /// Clips whose frames are candidates of every frame.
 #[derive(Debug)]
@@ -100,6 +100,43 @@ impl NonlocalPoseMeans {
 }
 
 impl<T: Real> Tile<'_, T> {
+    /// How each joint is compared.
+    fn kinds(&self) -> Vec<Joint> {
+        let kind = |chart: &JointChart<T>| match chart {
+            JointChart::Local => Kind::Wide,
+            JointChart::Fixed(_) => Kind::Vector,
+        };
+        let charts = self.clip.paths.charts.iter();
+        self.rows.iter().zip(charts).map(|(&row, chart)| Joint { row, kind: kind(chart) }).collect()
+    }
+
+    fn features<'a>(&'a self, kinds: &'a [Joint]) -> Features<'a, T> {
+        Features { planes: &self.planes, joints: kinds, shares: self.confidence.as_ref() }
+    }
+
+    /// The candidates of the clip; their numbers are their columns.
+    fn own<'a>(&self, features: Features<'a, T>) -> Side<'a, T> {
+        let Range { start, end } = self.candidates;
+        Side { features, at: start, first: start, count: end - start }
+    }
+
+    /// How fast the clip changes, for each group, where the search goes through all of it and that tells anything.
+    pub(super) fn spreads(&self, interrupt: &Interrupt) -> Result<Vec<Spreads<T>>, Error> {
+        let reach = self.clip.reach;
+        let far = self.clip.filter.neighbors.is_some() && !reach.added && self.clip.frames >= MANY_FRAMES;
+        if !far || self.confidence.is_some() || self.candidates.start < reach.before + MARGIN {
+            return Ok(Vec::new());
+        }
+        let kinds = self.kinds();
+        let side = self.own(self.features(&kinds));
+        let groups = self.clip.filter.groups(self.rows.len()).into_iter();
+        groups
+            .map(|joints| {
+                Spreads::new(&self.clip.filter.measure(joints, reach).halved(&kinds), &side, interrupt)
+            })
+            .collect()
+    }
+
     /// Adds the `count` most similar candidates of the window and the library, for a group of joints.
     pub(super) fn add_nearest(
         &self,
@@ -111,37 +148,18 @@ impl<T: Real> Tile<'_, T> {
         interrupt: &Interrupt,
     ) -> Result<(), Error> {
         let reach = self.clip.reach;
-        let measure = self.clip.filter.measure(joints, reach);
-        let kinds: Vec<Joint> = self
-            .rows
-            .iter()
-            .zip(&self.clip.paths.charts)
-            .map(|(&row, chart)| Joint {
-                row,
-                kind: if *chart == JointChart::Local { Kind::Wide } else { Kind::Vector },
-            })
-            .collect();
-        let measure = measure.halved(&kinds);
-        let features = Features { planes: &self.planes, joints: &kinds, shares: self.confidence.as_ref() };
+        let kinds = self.kinds();
+        let measure = self.clip.filter.measure(joints, reach).halved(&kinds);
+        let features = self.features(&kinds);
         let library = self.clip.library.as_ref();
         let others = library.map_or(0, |library| library.frames);
         let count = count.min(reach.back + reach.ahead + others);
         let mut nearest = Nearest::new(self.at, self.frames, count, Ties::Nearer);
         let frames = Side { features, at: self.at, first: self.at, count: self.frames };
-        let candidates = Side {
-            features,
-            at: self.candidates.start,
-            first: self.candidates.start,
-            count: self.candidates.len(),
-        };
-        let far = !reach.added && features.shares.is_none() && self.frames >= MANY_FRAMES;
-        let spreads = if far && self.candidates.start >= reach.before + MARGIN {
-            Some(Spreads::new(&measure, &candidates, interrupt)?)
-        } else {
-            None
-        };
+        let candidates = self.own(features);
+        let spreads = if self.frames >= MANY_FRAMES { self.clip.spreads.get(group) } else { None };
         let lags = Lags { within: -reach.back.cast_signed()..=reach.ahead.cast_signed(), without: 0..=0 };
-        let window = Join { measure: &measure, frames, candidates, lags, spreads: spreads.as_ref() };
+        let window = Join { measure: &measure, frames, candidates, lags, spreads };
         window.run(&mut nearest, scratch, interrupt)?;
         // Frames of the library come after all columns.
         let beyond = self.planes.length();

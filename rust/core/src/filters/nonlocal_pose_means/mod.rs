@@ -201,17 +201,24 @@ impl NonlocalPoseMeans {
         };
         let extended = Extended::new(clip, reach.pad, self.boundary);
         let paths = Paths::new(clip, &extended, self.chart, interrupt)?;
-        let shared = Clip {
+        let mut shared = Clip {
             filter: self,
             extended: &extended,
             paths: &paths,
             confidence,
             translation: moved,
             library,
+            spreads: Vec::new(),
             reach,
             frames,
         };
         let length = shared.tile_length();
+        let spreads = if self.neighbors.is_some() && !reach.added {
+            Tile::new(&shared, 0, length.min(frames), &mut Buffers::default()).spreads(interrupt)?
+        } else {
+            Vec::new()
+        };
+        shared.spreads = spreads;
         let moved_columns = if moved.is_some() { 3 } else { 0 };
         let tiles: Vec<(&mut [T], &mut [T])> = out
             .chunks_mut(length * joints * 4)

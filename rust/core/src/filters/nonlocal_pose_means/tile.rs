@@ -10,6 +10,7 @@ use crate::clip::Planes;
 use crate::parallel::Interrupt;
 use crate::rotations::quaternion::conjugate_one;
 use crate::search::join::Scratch;
+use crate::search::spread::Spreads;
 use crate::window::{Boundary, Extended, extended_number};
 use crate::{Error, Real};
 use std::ops::Range;
@@ -32,6 +33,8 @@ pub(super) struct Clip<'a, T> {
     pub(super) confidence: Option<&'a [T]>,
     pub(super) translation: Option<&'a [T]>,
     pub(super) library: Option<Library<T>>,
+    /// How fast the clip changes, per group of joints; empty where nobody asks.
+    pub(super) spreads: Vec<Spreads<T>>,
     pub(super) reach: Reach,
     pub(super) frames: usize,
 }

@@ -30,8 +30,8 @@ const TASK_FRAMES: usize = 256;
 /// Candidates whose planes are held at once: they stay within a common third-level cache.
 const CHUNK_FRAMES: usize = 16_384;
 
-/// Fewer frames are not worth the search for diagonals that do not matter, which costs as much as 13 of them.
-const FEW_FRAMES: usize = 64;
+/// Fewer frames are not worth the search for diagonals that do not matter, which costs as much as 40 of them.
+const FEW_FRAMES: usize = 128;
 
 /// What a number that is not there stands for.
 const NOBODY: i64 = -1;
