@@ -74,8 +74,8 @@ def patch_neighbors(
     Notes
     -----
     At most ``frames · candidates · joints`` angles, whatever the patch; of clips without missing samples, diagonals of
-    pairs that the triangle inequality shows to be too far are passed over: between a twentieth and a fifth of the angles is
-    left on recorded motion. Memory beyond the result: 16 bytes for each neighbour, 35 MB for 31 joints in float32 for
+    pairs that the triangle inequality shows to be too far are passed over: some 3 % of the angles are left of long recorded
+    clips. Memory beyond the result: 16 bytes for each neighbour, 35 MB for 31 joints in float32 for
     16,384 candidates at a time, and some MB per thread.
 
     Distances within rounding of each other may change places between precisions and backends.

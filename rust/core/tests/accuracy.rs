@@ -202,6 +202,18 @@ fn angle<T: Float>(what: &'static str) -> Worst {
     worst
 }
 
+/// `(4 asin(√e / 2))²` as `16 atan2(√e / 2, √(1 − e / 4))²`.
+fn square_of_angle<T: Float>(what: &'static str) -> Worst {
+    let mut worst = Worst::new(what);
+    for e in spread().map(|u| 2.0 * u).chain(magnitudes(1e-18, 2.0)) {
+        let e = T::from_f64(e);
+        let part = Wide::from(e.to_f64()) * Wide::from(0.25);
+        let quarter = Wide::atan2(part.sqrt(), (Wide::ONE - part).sqrt());
+        worst.see(error(e.square_of_angle(), quarter * quarter * Wide::from(16.0)), e.to_f64());
+    }
+    worst
+}
+
 #[test]
 fn the_truth_is_true() {
     let close = |a: Wide, b: Wide| (a - b).high.abs() < 1e-30;
@@ -251,6 +263,12 @@ fn the_exponential_is_accurate() {
 fn the_angle_is_accurate() {
     angle::<f32>("angle between, float32").at_most(3.0);
     angle::<f64>("angle between, float64").at_most(3.0);
+}
+
+#[test]
+fn the_squared_angle_is_accurate() {
+    square_of_angle::<f32>("squared angle, float32").at_most(3.0);
+    square_of_angle::<f64>("squared angle, float64").at_most(3.0);
 }
 
 #[test]

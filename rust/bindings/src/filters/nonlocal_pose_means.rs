@@ -13,6 +13,7 @@ use quatfilt_core::{ClipMut, ClipView, Real};
 /// −1 stands for the whole clip (`search_radius`), all candidates (`neighbors`) and no limit (`lookahead`).
 #[pyfunction]
 #[pyo3(signature = (q, translation, confidence, bandwidth, search_radius, patch_radius, distance, weights, neighbors, chart, boundary, lookahead, library, lengths, /))]
+#[allow(clippy::needless_pass_by_value, reason = "PyO3 makes a list into a vector")]
 #[allow(clippy::too_many_arguments, reason = "the reference's positional arguments")]
 pub(crate) fn nonlocal_pose_means(
     py: Python<'_>,

@@ -11,6 +11,7 @@ use quatfilt_core::{ClipView, Real};
 /// indices and distances, `(frames, k)`.
 #[pyfunction]
 #[pyo3(signature = (q, library, lengths, patch_radius, k, exclusion, weights, /))]
+#[allow(clippy::needless_pass_by_value, reason = "PyO3 makes a list into a vector")]
 #[allow(clippy::too_many_arguments, reason = "the reference's positional arguments")]
 pub(crate) fn patch_neighbors(
     py: Python<'_>,

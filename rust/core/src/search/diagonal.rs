@@ -80,7 +80,8 @@ impl<T: Real> Diagonal<T> {
         if a.shares.is_some() {
             shares.resize(span, T::ZERO);
             totals.resize(out.len(), T::ZERO);
-            kernels::shared_frame_distances(squares, shares, a, b, at, joints, factors, &measure.units);
+            let sums = [&mut squares[..], &mut shares[..]];
+            kernels::shared_frame_distances(sums, a, b, at, joints, factors, &measure.units);
             kernels::sliding_sums(squares, spare, window, out);
             kernels::sliding_sums(shares, spare, window, totals);
             kernels::shared_roots(out, totals, measure.averaged);

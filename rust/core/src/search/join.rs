@@ -84,23 +84,18 @@ impl<T: Real> Join<'_, T> {
         if low > high || last_frame < 0 {
             return Ok(());
         }
-        match self.spreads {
-            Some(spreads) => self.pass_over(low, high, spreads, nearest, scratch, interrupt),
-            None => {
-                for lag in low..=high {
-                    interrupt.check()?;
-                    if !self.lags.count(lag + shift) {
-                        continue;
-                    }
-                    let range = self.meeting(lag, 0);
-                    let Scratch { diagonal, distances, marks, .. } = scratch;
-                    distances.resize(range.len(), T::ZERO);
-                    self.measure(diagonal, lag, range.start, distances);
-                    self.offer(nearest, marks, lag, range.start, distances);
-                }
-                Ok(())
-            }
+        if let Some(spreads) = self.spreads {
+            return self.pass_over(low, high, spreads, nearest, scratch, interrupt);
         }
+        for lag in (low..=high).filter(|lag| self.lags.count(lag + shift)) {
+            interrupt.check()?;
+            let range = self.meeting(lag, 0);
+            let Scratch { diagonal, distances, marks, .. } = scratch;
+            distances.resize(range.len(), T::ZERO);
+            self.measure(diagonal, lag, range.start, distances);
+            self.offer(nearest, marks, lag, range.start, distances);
+        }
+        Ok(())
     }
 
     /// The lag between the numbers of the first candidate and the first frame.

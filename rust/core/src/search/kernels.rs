@@ -89,9 +89,10 @@ multiversion! {
     /// `d = Σ c·factor·square`, `total = Σ c·unit` over joints, where `c` is the product of the shares of both samples, for a
     /// multiple of [`LANES`] pairs.
     pub(crate) fn shared_frame_distances<T: Real>(
-        d: &mut [T], total: &mut [T], a: &Features<'_, T>, b: &Features<'_, T>, at: [usize; 2], joints: Range<usize>,
+        sums: [&mut [T]; 2], a: &Features<'_, T>, b: &Features<'_, T>, at: [usize; 2], joints: Range<usize>,
         factors: &[T], units: &[T],
     ) {
+        let [d, total] = sums;
         let n = d.len() / LANES * LANES;
         let (d, total) = (&mut d[..n], &mut total[..n]);
         d.fill(T::ZERO);

@@ -145,5 +145,7 @@ def nearest_candidates(clip: Clip, how: Comparison, neighbors: int, library: Pos
                 np.broadcast_to(np.arange(found.shape[1]), found.shape),
             )
             lags[frame] = np.take_along_axis(np.concatenate([lags[frame], none], axis=-1), order, axis=-1)
-            others[frame] = np.take_along_axis(np.concatenate([others[frame], all_of_them], axis=-1), order, axis=-1)
+            others[frame] = np.take_along_axis(
+                np.concatenate([others[frame], all_of_them], axis=-1), order, axis=-1
+            )
     return Kept(lags, others, smallest)

@@ -230,7 +230,7 @@ mod tests {
                 boundary: Boundary::Nearest,
                 lookahead: Some(lookahead),
             };
-            means.filter(view, None, None, ClipMut::new(&mut out, FRAMES, JOINTS)?, &interrupt)?;
+            means.filter(view, None, None, None, ClipMut::new(&mut out, FRAMES, JOINTS)?, &interrupt)?;
             assert!(farthest(&out, &q) > 1e-3);
             assert!(farthest(&pushed(means.stream()?, &q)?, &out) < 1e-12);
             let bilateral = Bilateral {

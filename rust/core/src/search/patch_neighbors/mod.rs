@@ -80,13 +80,9 @@ impl PatchNeighbors {
         }
         let own = [clip];
         let scenes = library.unwrap_or(&own);
-        let lags = match library {
-            Some(_) => Lags::all(),
-            None => {
-                let without = self.exclusion.min(frames).cast_signed();
-                Lags { without: -without..=without, ..Lags::all() }
-            }
-        };
+        let without = self.exclusion.min(frames).cast_signed();
+        let lags =
+            if library.is_some() { Lags::all() } else { Lags { without: -without..=without, ..Lags::all() } };
         let weights: Vec<T> = self.weights.iter().map(|weight| T::from_f64(*weight)).collect();
         let measure = Measure {
             before: self.patch_radius,
@@ -170,5 +166,79 @@ impl PatchNeighbors {
             first += scene.frames();
         }
         Ok(found)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const JOINTS: usize = 2;
+
+    /// Swings that repeat more or less, with a jerk in one place.
+    fn clip<T: Real>(frames: usize, speed: f64) -> Vec<T> {
+        (0..frames * JOINTS)
+            .flat_map(|i| {
+                let (time, joint) = ((i / JOINTS) as f64 * speed, (i % JOINTS) as f64);
+                let jerk = if i / JOINTS == frames / 3 { 0.7 } else { 0.0 };
+                let ((slow, _), (_, fast)) = (Real::sin_cos(time), Real::sin_cos(1.7 * time + joint));
+                let (sine, cosine) = Real::sin_cos((1.0 + joint) * (slow + 0.2 * fast) + jerk);
+                [cosine, 0.6 * sine, 0.8 * sine, 0.0].map(T::from_f64)
+            })
+            .collect()
+    }
+
+    fn passing_over_changes_nothing<T: Real>() -> Result<(), Error> {
+        let interrupt = Interrupt::new();
+        let pad = 3 + MARGIN;
+        for (frames, others, speed) in [(300, 500, 0.03), (150, 41, 0.01), (130, 1, 0.5), (200, 900, 1.1)] {
+            let (q, r) = (clip::<T>(frames, speed), clip::<T>(others, 1.1 * speed));
+            let (q, r) = (ClipView::new(&q, frames, JOINTS)?, ClipView::new(&r, others, JOINTS)?);
+            let poses = Poses::new(q, &[r], false, &interrupt)?;
+            let (mut here, mut there) = (Loaded::default(), Loaded::default());
+            poses.load(q, 0..frames, 3, &mut here);
+            poses.load(r, 0..others, pad, &mut there);
+            let ones = vec![T::ONE; JOINTS];
+            let measure = Measure {
+                before: 3,
+                after: 3,
+                joints: 0..JOINTS,
+                factors: ones.clone(),
+                units: ones,
+                averaged: true,
+            };
+            let side = Side { features: there.features(), at: pad, first: 0, count: others };
+            let spreads = Spreads::new(&measure, &side, &interrupt)?;
+            let near = Lags { without: -7..=7, ..Lags::all() };
+            let window = Lags { within: -90..=33, ..near.clone() };
+            for lags in [Lags::all(), near, window] {
+                let found = [None, Some(&spreads)].map(|spreads| {
+                    let join = Join {
+                        measure: &measure,
+                        frames: Side { features: here.features(), at: 3, first: 0, count: frames },
+                        candidates: side,
+                        lags: lags.clone(),
+                        spreads,
+                    };
+                    let mut nearest = Nearest::new(0, frames, 5, Ties::Lower);
+                    join.run(&mut nearest, &mut Scratch::default(), &interrupt).map(|()| nearest)
+                });
+                let [all, some] = found;
+                let (all, some) = (all?, some?);
+                for frame in 0..frames {
+                    assert!(
+                        all.of(frame).eq(some.of(frame)),
+                        "frame {frame} of {frames}, {others} candidates"
+                    );
+                }
+            }
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn what_is_passed_over_is_not_missed() -> Result<(), Error> {
+        passing_over_changes_nothing::<f32>()?;
+        passing_over_changes_nothing::<f64>()
     }
 }
