@@ -10,6 +10,12 @@ def clip(frames=40, joints=3, seed=0):
     return clips.smooth(np.random.default_rng(seed), frames, joints)
 
 
+def doubled():
+    q = clip()
+    q[7, 1] *= 2
+    return q
+
+
 def equal(found, expected):
     for a, b in zip(found, expected, strict=True):
         np.testing.assert_array_equal(a, b)
@@ -79,9 +85,9 @@ def test_where_there_are_fewer_it_says_so():
         ({"library": [clip(), clip(joints=2)]}, ValueError, "library[1]: expected 3 joints as in the clip, got 2"),
         ({"library": clip(joints=2)}, ValueError, "library: expected 3 joints as in the clip, got 2"),
         (
-            {"library": [clip(), 2 * clip()]},
+            {"library": [clip(), doubled()]},
             ValueError,
-            "library[1]: expected unit quaternions, got norm 2 at frame 0, joint 0",
+            "library[1]: expected unit quaternions, got norm 2 at frame 7, joint 1",
         ),
         ({"library": [[1.0, 0, 0, 0]]}, ValueError, "library[0]: expected shape (frames, joints, 4) or (frames, 4), got (4,)"),
         (
