@@ -7,8 +7,7 @@ from pathlib import Path
 from conditions import conditions
 from report import Results, aims_table, show, write
 
-ROOMS = ("rotations", "filters", "classical", "noise", "geodesics", "poses", "formats")
-ROOMS = ("rotations", "filters", "classical", "noise", "geodesics", "search", "formats")
+ROOMS = ("rotations", "filters", "classical", "noise", "geodesics", "poses", "search", "formats")
 
 
 def main() -> None:
