@@ -66,6 +66,15 @@ PAIR_POSITION = 1e-3
 """Units between an AMC and its conversion to BVH: four decimals of the root, of angles and of five of offsets."""
 
 
+SOLUTION = 1e-9
+"""Coordinates and energies of the most probable pose: the energy is flat there, so a rounding of it, 1e-16, moves the pose by
+its root."""
+
+
+TRACK = 1e-8
+"""Units and energies of a motion of tens of frames, each of which starts from the one before: roundings add up."""
+
+
 def filtered(dtype):
     """Return the tolerance for filters by the dtype of their rotations."""
     return FLOAT32 if np.dtype(dtype) == np.float32 else FLOAT64

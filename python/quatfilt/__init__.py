@@ -40,6 +40,11 @@ from quatfilt.noise.noise import add_gaussian_noise, add_impulse_noise, noise_le
 from quatfilt.reconstruction.database import MotionDatabase
 from quatfilt.reconstruction.gplvm import PoseGPLVM
 from quatfilt.reconstruction.local_models import PosePrediction, predict_pose
+from quatfilt.reconstruction.reconstructor import (
+    MotionReconstructor,
+    ReconstructedPose,
+    ReconstructionStream,
+)
 from quatfilt.rotations.continuity import continuous
 from quatfilt.rotations.mean import mean
 from quatfilt.rotations.quaternion import conjugate, exp, geodesic_distance, log, multiply, normalize
@@ -62,12 +67,15 @@ __all__ = [
     "KalmanStream",
     "Motion",
     "MotionDatabase",
+    "MotionReconstructor",
     "NonlocalPoseMeansStream",
     "OneEuroStream",
     "PoseGPLVM",
     "PosePrediction",
     "PrincipalGeodesicAnalysis",
     "QuatfiltError",
+    "ReconstructedPose",
+    "ReconstructionStream",
     "Report",
     "Skeleton",
     "add_gaussian_noise",

@@ -7,6 +7,7 @@ from quatfilt._typing import Array, Mask
 
 __all__ = [
     "FormatError",
+    "MotionTracker",
     "PoseStream",
     "bilateral",
     "bilateral_stream",
@@ -66,8 +67,11 @@ __all__ = [
     "smooth",
     "smooth_body",
     "smooth_patches",
+    "solve_pose",
     "split_heading",
     "to_euler",
+    "track",
+    "track_stream",
     "trusted",
     "undevelop",
     "weighted_moving_mean",
@@ -361,6 +365,66 @@ def predict_pose(
     share: float,
     /,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+
+# reconstruction/solver
+def solve_pose(
+    parents: NDArray[np.int64],
+    offsets: NDArray[np.float64],
+    points: NDArray[np.int64],
+    up: int,
+    centres: NDArray[np.float64],
+    place: NDArray[np.float64],
+    heading: float,
+    mean: NDArray[np.float64],
+    deviation: NDArray[np.float64],
+    axes: NDArray[np.float64],
+    positions: NDArray[np.float64],
+    position_deviations: NDArray[np.float64],
+    orientations: NDArray[np.float64],
+    orientation_deviations: NDArray[np.float64],
+    start: NDArray[np.float64],
+    most: int,
+    /,
+) -> tuple[Array, Array, Array, float, float, int]: ...
+
+# reconstruction/tracker
+def track(
+    parents: NDArray[np.int64],
+    offsets: NDArray[np.float64],
+    points: NDArray[np.int64],
+    up: int,
+    poses: tuple[NDArray[Any], ...],
+    options: tuple[Any, ...],
+    model: tuple[str, str, str, float, float, float],
+    initial: tuple[NDArray[np.float64], NDArray[np.float64], float] | None,
+    positions: NDArray[np.float64],
+    position_deviations: NDArray[np.float64],
+    orientations: NDArray[np.float64],
+    orientation_deviations: NDArray[np.float64],
+    /,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+def track_stream(
+    parents: NDArray[np.int64],
+    offsets: NDArray[np.float64],
+    points: NDArray[np.int64],
+    up: int,
+    poses: tuple[NDArray[Any], ...],
+    options: tuple[Any, ...],
+    model: tuple[str, str, str, float, float, float],
+    initial: tuple[NDArray[np.float64], NDArray[np.float64], float] | None,
+    /,
+) -> MotionTracker: ...
+
+@final
+class MotionTracker:
+    def push(
+        self,
+        positions: NDArray[np.float64],
+        position_deviations: NDArray[np.float64],
+        orientations: NDArray[np.float64],
+        orientation_deviations: NDArray[np.float64],
+        /,
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
 
 # rotations/continuity
 def continuous(q: Array, /) -> Array: ...

@@ -2,6 +2,7 @@
 
 import numpy as np
 import quatfilt as qf
+import walkers
 
 NOT_KERNELS = {
     "Compressed": "a class",
@@ -9,8 +10,11 @@ NOT_KERNELS = {
     "FileAccessError": "an error",
     "FileFormatError": "an error",
     "Motion": "a class",
+    "MotionDatabase": "a class",
     "PoseGPLVM": "GPy learns it, for seconds",
     "PosePrediction": "a class",
+    "ReconstructedPose": "what a stream gives",
+    "ReconstructionStream": "a reconstructor makes it",
     "QuatfiltError": "an error",
     "Report": "a class",
     "Skeleton": "a class",
@@ -85,6 +89,14 @@ def predicted(q):
     return np.concatenate([qf.predict_pose(examples[1:], examples[0, :3], model=m).pose for m in models])
 
 
+def reconstructed(dtype):
+    """Return a motion from a few trajectories."""
+    reconstructor = qf.MotionReconstructor(
+        walkers.database(), control_points=walkers.JOINTS, neighbors=24, model="local_pca"
+    )
+    return reconstructor.reconstruct(walkers.seen(walkers.walker(6)).astype(dtype), fps=60).rotations
+
+
 def analysed(q):
     """Fit geodesics to samples in the half about 1, so that there is one mean, and go through all that is asked of them."""
     near = with_gaps(qf.exp(0.6 * qf.log(q * np.where(q[..., :1] < 0, -1, 1).astype(q.dtype))))
@@ -105,6 +117,7 @@ CALLS = {
         qf.KalmanStream(process_noise=0.1, measurement_noise=0.5, lookahead=7), a
     ),
     "MotionDatabase": lambda a, _b, _v: database(a).features,
+    "MotionReconstructor": lambda a, _b, _v: reconstructed(a.dtype),
     "NonlocalPoseMeansStream": lambda a, _b, _v: streamed(
         qf.NonlocalPoseMeansStream(bandwidth=1.0, lookahead=7), a
     ),

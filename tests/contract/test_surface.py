@@ -11,6 +11,7 @@ STREAMS = "the reference's filter of the whole clip defines the stream"
 
 ONLY_IN_CORE = {
     "FormatError": FILES,
+    "MotionTracker": STREAMS,
     "PoseStream": STREAMS,
     "bilateral_stream": STREAMS,
     "get_num_threads": "the reference has no threads",
@@ -22,6 +23,7 @@ ONLY_IN_CORE = {
     "read_asf": FILES,
     "read_bvh": FILES,
     "set_num_threads": "the reference has no threads",
+    "track_stream": STREAMS,
     "simd_level": "the reference leaves vector instructions to NumPy",
     "write_bvh": FILES,
 }

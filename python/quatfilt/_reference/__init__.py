@@ -38,6 +38,8 @@ from quatfilt._reference.noise.noise import noise_level
 from quatfilt._reference.reconstruction.features import pose_features
 from quatfilt._reference.reconstruction.heading import split_heading
 from quatfilt._reference.reconstruction.local_models.predict import predict_pose
+from quatfilt._reference.reconstruction.solver import solve_pose
+from quatfilt._reference.reconstruction.tracker import track
 from quatfilt._reference.rotations.euler import continuous_euler, from_euler, to_euler
 from quatfilt._reference.rotations.mean import mean
 from quatfilt._reference.rotations.quaternion import (
@@ -101,8 +103,10 @@ __all__ = [
     "smooth",
     "smooth_body",
     "smooth_patches",
+    "solve_pose",
     "split_heading",
     "to_euler",
+    "track",
     "trusted",
     "undevelop",
     "weighted_moving_mean",

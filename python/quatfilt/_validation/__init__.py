@@ -9,6 +9,7 @@ from quatfilt._validation.confidences import confidence, pose_confidence
 from quatfilt._validation.frame_times import times, times_within
 from quatfilt._validation.geodesics import centred, scores
 from quatfilt._validation.graphs import graph
+from quatfilt._validation.joint_names import joint_names
 from quatfilt._validation.joints import frequencies, per_joint
 from quatfilt._validation.libraries import library
 from quatfilt._validation.masks import mask
@@ -29,6 +30,7 @@ __all__ = [
     "graph",
     "integer",
     "interval",
+    "joint_names",
     "joint_weights",
     "known",
     "library",

@@ -24,6 +24,7 @@ from quatfilt.cli.evaluate import evaluate
 from quatfilt.cli.info import info
 from quatfilt.cli.pga import pga
 from quatfilt.cli.segment import segment
+from quatfilt.cli.reconstruct import reconstruct
 
 app = typer.Typer(
     name="quatfilt",
@@ -39,6 +40,7 @@ app.command()(info)
 app.command()(compare)
 app.command()(pga)
 app.command()(segment)
+app.command()(reconstruct)
 app.command()(demo)
 app.add_typer(database)
 app.add_typer(evaluate)

@@ -81,6 +81,10 @@ mod _core {
     #[pymodule_export]
     use super::reconstruction::local_models::predict_pose;
     #[pymodule_export]
+    use super::reconstruction::solver::solve_pose;
+    #[pymodule_export]
+    use super::reconstruction::tracker::{MotionTracker, track, track_stream};
+    #[pymodule_export]
     use super::rotations::continuity::continuous;
     #[pymodule_export]
     use super::rotations::euler::{continuous_euler, from_euler, to_euler};

@@ -13,7 +13,7 @@
 //! - [`noise`]: the noise level;
 //! - [`geodesics`]: principal geodesic analysis, compression and segmentation with geodesics;
 //! - [`motion`]: forward kinematics;
-//! - [`reconstruction`]: headings and features of a database of poses, local models.
+//! - [`reconstruction`]: motion from a few trajectories.
 //!
 //! Hot kernels are maps over frames on aligned planes: no libm, no fused multiply-add and no horizontal sums, so
 //! that the bits are the same at every SIMD level and for every number of threads.

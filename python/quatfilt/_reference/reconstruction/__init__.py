@@ -1,1 +1,1 @@
-"""Motion from a few trajectories: the database of poses, local models."""
+"""Motion from a few trajectories."""

@@ -30,29 +30,7 @@ pub(crate) fn predict_pose(
     ridge: f64,
     share: f64,
 ) -> PyResult<Arrays> {
-    let options = Options {
-        model: named(
-            "model",
-            model,
-            &[
-                ("local_regression", Model::LocalRegression),
-                ("partial_least_squares", Model::PartialLeastSquares),
-                ("local_pcr", Model::LocalPcr),
-                ("local_pca", Model::LocalPca),
-                ("nearest", Model::Nearest),
-                ("mean_pose", Model::MeanPose),
-            ],
-        )?,
-        target: named("target", target, &[("pose", Target::Pose), ("change", Target::Change)])?,
-        deviation: named(
-            "deviation",
-            deviation,
-            &[("predictive", Deviation::Predictive), ("leave_one_out", Deviation::LeaveOneOut)],
-        )?,
-        bandwidth,
-        ridge,
-        share,
-    };
+    let options = options(model, target, deviation, bandwidth, ridge, share)?;
     let joint_weights = input::<f64>("joint_weights", joint_weights)?;
     let joint_weights = elements("joint_weights", &joint_weights)?;
     let predicted = by_dtype!(segments, T => {
@@ -90,4 +68,38 @@ fn array(py: Python<'_>, shape: &[usize], elements: &[f64]) -> PyResult<Py<PyAny
     let out = output::<f64>(py, shape);
     out.readwrite().as_slice_mut()?.copy_from_slice(elements);
     Ok(out.into_any().unbind())
+}
+
+/// The parameters of a model, by their names.
+pub(super) fn options(
+    model: &str,
+    target: &str,
+    deviation: &str,
+    bandwidth: f64,
+    ridge: f64,
+    share: f64,
+) -> PyResult<Options> {
+    Ok(Options {
+        model: named(
+            "model",
+            model,
+            &[
+                ("local_regression", Model::LocalRegression),
+                ("partial_least_squares", Model::PartialLeastSquares),
+                ("local_pcr", Model::LocalPcr),
+                ("local_pca", Model::LocalPca),
+                ("nearest", Model::Nearest),
+                ("mean_pose", Model::MeanPose),
+            ],
+        )?,
+        target: named("target", target, &[("pose", Target::Pose), ("change", Target::Change)])?,
+        deviation: named(
+            "deviation",
+            deviation,
+            &[("predictive", Deviation::Predictive), ("leave_one_out", Deviation::LeaveOneOut)],
+        )?,
+        bandwidth,
+        ridge,
+        share,
+    })
 }

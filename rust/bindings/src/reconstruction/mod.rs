@@ -1,5 +1,7 @@
-//! Motion from a few trajectories: the database of poses, local models.
+//! Motion from a few trajectories.
 
 pub(crate) mod features;
 pub(crate) mod heading;
 pub(crate) mod local_models;
+pub(crate) mod solver;
+pub(crate) mod tracker;

@@ -1,5 +1,9 @@
-//! Motion from a few trajectories: the database of poses, local models.
+//! Motion from a few trajectories.
 
 pub mod features;
+pub mod frame;
 pub mod heading;
+pub mod kinematics;
 pub mod local_models;
+pub mod solver;
+pub mod tracker;

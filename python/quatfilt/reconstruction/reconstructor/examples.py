@@ -1,0 +1,104 @@
+"""A database, as it serves for one body with some control points."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from quatfilt._backend import ops
+from quatfilt.motion.skeleton import Skeleton
+from quatfilt.reconstruction.database import MotionDatabase
+from quatfilt.reconstruction.database.weights import reaches
+
+POSES_AT_ONCE = 16 * 1024
+"""Poses whose joints are placed together: some ten megabytes."""
+
+POSES_MEASURED = 2048
+"""Poses, spread over all, that tell how far apart control points are."""
+
+
+@dataclass(frozen=True)
+class Examples:
+    """A database, and where a body in its poses would have its control points.
+
+    Parameters
+    ----------
+    database : MotionDatabase
+        The poses.
+    skeleton : Skeleton
+        The body, in the order of joints and the unit of the database.
+    points : ndarray of int64, shape (points,)
+        Its joints that are control points.
+    """
+
+    database: MotionDatabase
+    skeleton: Skeleton
+    points: NDArray[np.int64]
+
+    @cached_property
+    def reach(self) -> float:
+        """Length of the longest chain of bones from the root, skeleton units: half of the body's size."""
+        return float(reaches(self.skeleton)[0]) or 1.0
+
+    @cached_property
+    def translation(self) -> NDArray[np.float32]:
+        """Positions of the roots, if the body had made the steps of each clip in its own size; shape (poses, 3)."""
+        db = self.database
+        own = np.array([self.reach / (float(reaches(one)[0]) or 1.0) for one in db.skeletons])
+        scale = np.repeat(own[db.skeleton_indices], np.diff(db.starts))
+        return np.ascontiguousarray(db.translation * scale[:, None], np.float32)
+
+    @cached_property
+    def trails(self) -> NDArray[np.float32]:
+        """Positions of the control points; shape (poses, points, 3)."""
+        return np.concatenate(
+            [
+                self._places(slice(start, start + POSES_AT_ONCE))
+                for start in range(0, len(self.database), POSES_AT_ONCE)
+            ]
+        )
+
+    def _places(self, which: slice) -> NDArray[np.float32]:
+        db = self.database
+        # In float64, so that backends round alike.
+        rotations = db.rotations[which].astype(np.float64)
+        turns = np.zeros((len(rotations), 3))
+        turns[:, db.up] = db.heading[which] / 2
+        rotations[:, 0] = ops().multiply(ops().exp(turns), np.ascontiguousarray(rotations[:, 0]))
+        places = ops().forward_kinematics(
+            rotations, self.translation[which].astype(np.float64), db.parents, self.skeleton.offsets
+        )
+        return np.ascontiguousarray(places[:, self.points], np.float32)
+
+    @cached_property
+    def extent(self) -> tuple[float, float]:
+        """How far control points usually are from their middle, and above the ground; skeleton units."""
+        step = max(1, len(self.database) // POSES_MEASURED)
+        return extent(self.trails[::step], self.database.up)
+
+    @property
+    def arrays(self) -> tuple[NDArray[Any], ...]:
+        """What the kernels take."""
+        db = self.database
+        return (
+            db.rotations,
+            db.heading,
+            self.translation,
+            self.trails,
+            db.starts,
+            db.features,
+            db.mean_rotations,
+            db.joint_weights,
+        )
+
+
+def extent(places: NDArray[Any], up: int) -> tuple[float, float]:
+    """Return the median distance of points from their middle, and the median of their heights; NaN where none is complete."""
+    complete = places[np.isfinite(places).all(axis=(1, 2))].astype(np.float64)
+    if not complete.size:
+        return float("nan"), float("nan")
+    middle = complete.mean(axis=1, keepdims=True)
+    spread = np.sqrt(np.mean(np.sum((complete - middle) ** 2, axis=2), axis=1))
+    return float(np.median(spread)), float(np.median(np.abs(complete[..., up])))

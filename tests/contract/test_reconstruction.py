@@ -1,0 +1,239 @@
+"""Motion from a few trajectories: what is taken, and what is refused word for word."""
+
+import copy
+import pickle
+import threading
+
+import numpy as np
+import pytest
+import quatfilt as qf
+import walkers
+from quatfilt.evaluation.synthetic import walk
+
+
+def reconstructor(**options):
+    return qf.MotionReconstructor(
+        options.pop("database", None) or walkers.database(),
+        **{"control_points": walkers.JOINTS, "neighbors": 24, **options},
+    )
+
+
+def positions(frames=4):
+    return walkers.seen(walkers.walker(frames))
+
+
+@pytest.mark.parametrize(
+    ("options", "kind", "message"),
+    [
+        (
+            {"control_points": ["LeftWirst"]},
+            ValueError,
+            r"control_points: expected joints of the database, got 'LeftWirst'; close to it: LeftWrist, ",
+        ),
+        (
+            {"control_points": ["qqq"]},
+            ValueError,
+            r"control_points: expected joints of the database, got 'qqq'; they are Hips, ",
+        ),
+        ({"control_points": []}, ValueError, "control_points: expected at least one joint, got none"),
+        (
+            {"control_points": ["Head", "Head"]},
+            ValueError,
+            "control_points: expected each joint once, got 'Head' again",
+        ),
+        (
+            {"control_points": "Head"},
+            TypeError,
+            "control_points: expected a sequence of names of joints, got 'Head'",
+        ),
+        ({"order": 0}, ValueError, "order: expected an integer of at least 1"),
+        ({"neighbors": 0}, ValueError, "neighbors: expected an integer of at least 1"),
+        ({"model": "svm"}, ValueError, "model: expected one of 'local_regression'"),
+        ({"model": "gplvm"}, ValueError, "model: expected one of .*, got 'gplvm': it is no local model"),
+        ({"control_noise": 0}, ValueError, "control_noise: expected a number of at least"),
+        ({"control_scale": -1}, ValueError, "control_scale: expected a number above 0"),
+        ({"ridge": 0}, ValueError, "ridge: expected a number of at least"),
+        ({"skeleton": 3}, TypeError, "skeleton: expected a Skeleton or None, got int"),
+        (
+            {"skeleton": qf.Skeleton(["a"], [-1], [[0, 0, 0]])},
+            ValueError,
+            "skeleton: expected the joints of the database",
+        ),
+    ],
+)
+def test_options_that_are_refused(options, kind, message):
+    with pytest.raises(kind, match=message):
+        reconstructor(**options)
+
+
+def test_no_database():
+    with pytest.raises(TypeError, match="database: expected a MotionDatabase, got int"):
+        qf.MotionReconstructor(3, control_points=["Head"])
+
+
+def test_a_database_of_short_clips():
+    small = qf.MotionDatabase.from_motions([walk(seconds=0.2, fps=60)], fps=60, min_length=0)
+    with pytest.raises(
+        ValueError,
+        match="database: expected a clip of more than 15 poses at 60 fps, got none of more than 12",
+    ):
+        reconstructor(database=small)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "kind", "message"),
+    [
+        ({"positions": np.zeros((4, 3, 3))}, ValueError, r"positions: expected shape \(frames, 4, 3\), got \(4, 3, 3\)"),
+        ({"positions": np.zeros((4, 3))}, ValueError, r"positions: expected shape \(frames, 4, 3\), got \(4, 3\)"),
+        ({"positions": np.zeros((4, 4, 2))}, ValueError, r"positions: expected shape \(..., 3\), got \(4, 4, 2\)"),
+        ({"positions": np.zeros((0, 4, 3))}, ValueError, "positions: expected at least one control point that is seen, got none"),
+        ({"positions": np.full((4, 4, 3), np.nan)}, ValueError, "positions: expected at least one control point that is seen, got none"),
+        ({"fps": 0}, ValueError, "fps: expected a number above 0, got 0"),
+        ({"orientations": np.ones((4, 3, 4)) / 2}, ValueError, r"orientations: expected shape \(4, 4, 4\) as of the positions, got \(4, 3, 4\)"),
+        ({"orientations": np.ones((4, 4, 4))}, ValueError, "orientations: expected unit quaternions, got norm 2"),
+        ({"confidence": np.ones((4, 3))}, ValueError, r"confidence: expected shape \(4,\) or \(4, 4\), got \(4, 3\)"),
+        ({"confidence": np.full(4, 2.0)}, ValueError, "confidence: expected values from 0 to 1, got 2.0"),
+        ({"confidence": np.zeros(4)}, ValueError, "positions: expected at least one control point that is seen, got none"),
+        ({"initial": 3}, TypeError, "initial: expected a Motion or None, got int"),
+    ],
+)  # fmt: skip
+def test_trajectories_that_are_refused(arguments, kind, message):
+    with pytest.raises(kind, match=message):
+        reconstructor().reconstruct(**{"positions": positions(), "fps": 60, **arguments})
+
+
+def test_initial_of_other_joints_or_without_frames():
+    other = qf.Motion(
+        np.tile([1.0, 0, 0, 0], (2, 1, 1)), fps=60, skeleton=qf.Skeleton(["a"], [-1], [[0, 0, 0]])
+    )
+    with pytest.raises(ValueError, match="initial: expected the joints of the database"):
+        reconstructor().reconstruct(positions(), fps=60, initial=other)
+    none = walkers.part(walkers.walker(4), slice(0, 0))
+    with pytest.raises(ValueError, match="initial: expected at least one frame, got none"):
+        reconstructor().reconstruct(positions(), fps=60, initial=none)
+
+
+@pytest.mark.parametrize("factor", [0.01, 100.0, 10.0, 0.1])
+def test_another_unit_is_told(factor):
+    with pytest.raises(
+        ValueError,
+        match=f"positions: expected the unit of the database, 1 cm, got .* by {1 / factor:.4g}, they would",
+    ):
+        reconstructor().reconstruct(positions() * factor, fps=60)
+
+
+def test_unit_of_the_skeleton_is_told():
+    q = [walk(seconds=2, fps=60, seed=seed) for seed in (1, 2)]
+    scaled = [
+        qf.Motion(
+            motion.rotations,
+            motion.translation / 5.644,
+            fps=60,
+            skeleton=qf.Skeleton(
+                motion.skeleton.names,
+                motion.skeleton.parents,
+                motion.skeleton.offsets / 5.644,
+                centimetres_per_unit=5.644,
+            ),
+        )
+        for motion in q
+    ]
+    database = qf.MotionDatabase.from_motions(scaled, fps=60)
+    with pytest.raises(ValueError, match=r"multiplied by 0\.1772, they would fit"):
+        reconstructor(database=database).reconstruct(positions(), fps=60)
+    reconstructor(database=database).reconstruct(positions() / 5.644, fps=60)
+
+
+def sane(result, frames):
+    assert len(result) == frames
+    assert np.isfinite(result.rotations).all()
+    assert np.isfinite(result.translation).all()
+    np.testing.assert_allclose(np.linalg.norm(result.rotations, axis=2), 1, rtol=0, atol=1e-9)
+
+
+def test_targets_out_of_reach_have_a_high_energy():
+    one = reconstructor()
+    points = positions(12)
+    sane(one.reconstruct(points, fps=60), 12)
+    usual = one.energies_.sum(axis=1).max()
+    far = points.copy()
+    far[:, 0] += [0.0, 300.0, 0.0]
+    result = one.reconstruct(far, fps=60)
+    sane(result, 12)
+    assert one.energies_.sum(axis=1).min() > 20 * usual
+    together = np.broadcast_to(points[:, :1], points.shape)
+    sane(one.reconstruct(together, fps=60), 12)
+    assert one.energies_.sum(axis=1).min() > 20 * usual
+
+
+def test_points_may_be_missing():
+    points = positions(40).copy()
+    points[:3] = np.nan
+    points[5, 1] = np.nan
+    points[10:30] = np.nan
+    one = reconstructor()
+    sane(one.reconstruct(points, fps=60), 40)
+    assert (one.energies_[10:30, 0] == 0).all()
+    points[35:] = np.nan
+    sane(one.reconstruct(points, fps=60), 40)
+
+
+def test_neighbors_beyond_the_database():
+    few = reconstructor(database=walkers.database(seeds=(1,), seconds=0.5), neighbors=1000)
+    sane(few.reconstruct(positions(), fps=60), 4)
+    one = reconstructor(neighbors=1)
+    sane(one.reconstruct(positions(), fps=60), 4)
+
+
+def test_dtype_and_inputs():
+    points = positions().astype(np.float32)
+    before = points.tobytes()
+    result = reconstructor().reconstruct(points, fps=60)
+    assert result.rotations.dtype == result.translation.dtype == np.float32
+    assert points.tobytes() == before
+    one = reconstructor()
+    wide = one.reconstruct(points.astype(np.float64), fps=60)
+    assert wide.rotations.dtype == np.float64
+    np.testing.assert_array_equal(wide.rotations.astype(np.float32), result.rotations)
+    assert one.energies_.shape == (4, 2)
+    again = one.reconstruct(points.astype(np.float64)[:, :, :], fps=60)
+    np.testing.assert_array_equal(again.rotations, wide.rotations)
+    assert (
+        repr(one)
+        == "MotionReconstructor(LeftWrist, RightWrist, LeftAnkle, RightAnkle; local_regression, 540 poses)"
+    )
+    assert one.control_points == walkers.JOINTS
+
+
+def test_stream_refuses_and_goes_on():
+    stream, other = reconstructor().stream(), reconstructor().stream()
+    points = positions()
+    stream.push(points[0])
+    other.push(points[0])
+    with pytest.raises(ValueError, match=r"positions: expected shape \(4, 3\), got \(3, 3\)"):
+        stream.push(points[1, :3])
+    with pytest.raises(ValueError, match="confidence: expected a number or one per joint"):
+        stream.push(points[1], confidence=[1.0, 2.0])
+    np.testing.assert_array_equal(stream.push(points[1]).rotations, other.push(points[1]).rotations)
+    for change in (pickle.dumps, copy.copy, copy.deepcopy):
+        with pytest.raises(
+            TypeError, match="ReconstructionStream: a stream can neither be pickled nor copied"
+        ):
+            change(stream)
+
+
+def test_streams_in_threads():
+    expected = reconstructor().reconstruct(positions(), fps=60).rotations
+    results = {}
+
+    def follow(number):
+        stream = reconstructor().stream()
+        results[number] = np.array([stream.push(points).rotations for points in positions()])
+
+    threads = [threading.Thread(target=follow, args=(number,)) for number in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for result in results.values():
+        np.testing.assert_allclose(result, expected, rtol=0, atol=1e-12)
