@@ -50,6 +50,8 @@ from quatfilt.rotations.mean import mean
 from quatfilt.rotations.quaternion import conjugate, exp, geodesic_distance, log, multiply, normalize
 from quatfilt.rotations.resample import resample, slerp
 from quatfilt.search.patch_neighbors import patch_neighbors
+from quatfilt.search.poses import nearest_segments, neighbor_graph
+from quatfilt.search.walk import PoseSearch
 
 if _is_debug_build():
     warnings.warn(
@@ -73,6 +75,7 @@ __all__ = [
     "PoseGPLVM",
     "PosePrediction",
     "PrincipalGeodesicAnalysis",
+    "PoseSearch",
     "QuatfiltError",
     "ReconstructedPose",
     "ReconstructionStream",
@@ -99,6 +102,8 @@ __all__ = [
     "mean",
     "metrics",
     "multiply",
+    "nearest_segments",
+    "neighbor_graph",
     "noise_level",
     "nonlocal_pose_means",
     "normalize",

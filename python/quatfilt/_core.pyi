@@ -9,6 +9,7 @@ __all__ = [
     "FormatError",
     "MotionTracker",
     "PoseStream",
+    "SegmentWalk",
     "bilateral",
     "bilateral_stream",
     "body_geodesics",
@@ -42,6 +43,8 @@ __all__ = [
     "log",
     "mean",
     "multiply",
+    "nearest_segments",
+    "neighbor_graph",
     "noise_level",
     "nonlocal_pose_means",
     "nonlocal_pose_means_stream",
@@ -61,6 +64,7 @@ __all__ = [
     "savgol_derivative",
     "scan",
     "segment",
+    "segment_walk",
     "set_num_threads",
     "simd_level",
     "slerp",
@@ -462,6 +466,44 @@ def patch_neighbors(
     weights: NDArray[np.float64],
     /,
 ) -> tuple[NDArray[np.int64], Array]: ...
+
+# search/poses
+def nearest_segments(
+    features: Array,
+    starts: NDArray[np.int64],
+    queries: Array,
+    k: int,
+    successors: int,
+    excluded: NDArray[np.int64] | None,
+    /,
+) -> tuple[NDArray[np.int64], Array]: ...
+def neighbor_graph(
+    features: Array,
+    starts: NDArray[np.int64],
+    degree: int,
+    length: int,
+    successors: int,
+    exclusion: int,
+    /,
+) -> tuple[NDArray[np.int32], Array]: ...
+
+# search/walk
+@final
+class SegmentWalk:
+    def next(self, query: Array, first: int, last: int, /) -> tuple[NDArray[np.int64], Array, bool]: ...
+    def reset(self, /) -> None: ...
+
+def segment_walk(
+    features: Array,
+    starts: NDArray[np.int64],
+    graph: NDArray[np.int32],
+    k: int,
+    length: int,
+    successors: int,
+    refresh: int,
+    ratio: float,
+    /,
+) -> SegmentWalk: ...
 
 # threads
 def get_num_threads() -> int: ...

@@ -53,6 +53,28 @@ def with_gaps(q):
     return gaps
 
 
+POSES = 4_000
+"""Poses that are searched, of nine numbers each."""
+
+
+def borders():
+    """Return the borders of three clips."""
+    return [0, 1_500, 1_501, POSES]
+
+
+def rows(v):
+    """Return poses that move, as rows."""
+    return np.cumsum(v[:POSES].reshape(POSES, 9), axis=0)
+
+
+def searched(v):
+    """Find the nearest segments of frames in sequence, along a graph."""
+    poses = rows(v)
+    graph, _ = qf.neighbor_graph(poses, borders(), degree=4)
+    search = qf.PoseSearch(poses, borders(), graph, k=5)
+    return np.stack([search(poses[t : t + 3] + 0.01)[1] for t in range(50)])
+
+
 STREAMED = 400
 """Frames that are pushed one by one."""
 
@@ -123,6 +145,7 @@ CALLS = {
     ),
     "OneEuroStream": lambda a, _b, _v: streamed(qf.OneEuroStream(min_cutoff=0.1, beta=0.1), a),
     "PrincipalGeodesicAnalysis": lambda a, _b, _v: analysed(a),
+    "PoseSearch": lambda _a, _b, v: searched(v),
     "add_gaussian_noise": lambda a, _b, _v: qf.add_gaussian_noise(a, sigma=0.1, rng=1),
     "add_impulse_noise": lambda a, _b, _v: qf.add_impulse_noise(a, probability=0.1, rng=1),
     "bilateral": lambda a, _b, _v: qf.bilateral(with_gaps(a), sigma_angle=1.0, iterations=2),
@@ -141,6 +164,10 @@ CALLS = {
     "log": lambda a, _b, _v: qf.log(six_times(a)),
     "mean": lambda a, _b, _v: qf.mean(with_gaps(a)),
     "multiply": lambda a, b, _v: qf.multiply(six_times(a), six_times(b)),
+    "nearest_segments": lambda _a, _b, v: qf.nearest_segments(
+        rows(v), borders(), rows(v)[:180].reshape(60, 3, 9) + 0.01, k=7
+    )[1],
+    "neighbor_graph": lambda _a, _b, v: qf.neighbor_graph(rows(v), borders(), degree=3)[1],
     "noise_level": lambda a, _b, _v: qf.noise_level(with_gaps(a)),
     "nonlocal_pose_means": lambda a, _b, _v: qf.nonlocal_pose_means(with_gaps(a), bandwidth=1.0),
     "normalize": lambda a, _b, _v: qf.normalize(six_times(2 * a)),

@@ -13,6 +13,7 @@ ONLY_IN_CORE = {
     "FormatError": FILES,
     "MotionTracker": STREAMS,
     "PoseStream": STREAMS,
+    "SegmentWalk": "what `segment_walk` returns",
     "bilateral_stream": STREAMS,
     "get_num_threads": "the reference has no threads",
     "is_debug_build": "the reference is not built",

@@ -54,6 +54,8 @@ from quatfilt._reference.rotations.quaternion import (
 )
 from quatfilt._reference.rotations.resample import slerp
 from quatfilt._reference.search.patch_neighbors import patch_neighbors
+from quatfilt._reference.search.poses import nearest_segments, neighbor_graph
+from quatfilt._reference.search.walk import segment_walk
 
 __all__ = [
     "bilateral",
@@ -85,6 +87,8 @@ __all__ = [
     "log",
     "mean",
     "multiply",
+    "nearest_segments",
+    "neighbor_graph",
     "noise_level",
     "nonlocal_pose_means",
     "normalize",
@@ -99,6 +103,7 @@ __all__ = [
     "savgol_derivative",
     "scan",
     "segment",
+    "segment_walk",
     "slerp",
     "smooth",
     "smooth_body",

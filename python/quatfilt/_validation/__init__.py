@@ -14,6 +14,7 @@ from quatfilt._validation.joints import frequencies, per_joint
 from quatfilt._validation.libraries import library
 from quatfilt._validation.masks import mask
 from quatfilt._validation.numbers import integer, interval, number, odd
+from quatfilt._validation.pose_rows import features, queries, ranges, starts
 from quatfilt._validation.poses import clip, pose
 from quatfilt._validation.randomness import generator
 from quatfilt._validation.segments import joint_weights, root_steps, segments
@@ -24,6 +25,7 @@ __all__ = [
     "choice",
     "clip",
     "confidence",
+    "features",
     "floats",
     "frequencies",
     "generator",
@@ -45,10 +47,13 @@ __all__ = [
     "pose_confidence",
     "posed",
     "quaternions",
+    "queries",
+    "ranges",
     "root_steps",
     "scalar_order",
     "scores",
     "segments",
+    "starts",
     "switch",
     "times",
     "times_within",

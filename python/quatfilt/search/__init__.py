@@ -1,1 +1,2 @@
 """Search for similar patches of motions."""
+"""Search for similar poses."""

@@ -97,5 +97,7 @@ mod _core {
     #[pymodule_export]
     use super::search::patch_neighbors::patch_neighbors;
     #[pymodule_export]
+    use super::search::poses::{SegmentWalk, nearest_segments, neighbor_graph, segment_walk};
+    #[pymodule_export]
     use super::threads::{get_num_threads, is_debug_build, set_num_threads, simd_level};
 }

@@ -12,6 +12,7 @@
 //! - [`filters`]: filling of gaps;
 //! - [`noise`]: the noise level;
 //! - [`geodesics`]: principal geodesic analysis, compression and segmentation with geodesics;
+//! - [`search`]: nearest segments of poses, and their graph;
 //! - [`motion`]: forward kinematics;
 //! - [`reconstruction`]: motion from a few trajectories.
 //!

@@ -1,3 +1,5 @@
 //! Search for similar patches.
 
 pub(crate) mod patch_neighbors;
+//! Search for similar poses.
+pub(crate) mod poses;

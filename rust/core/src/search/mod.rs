@@ -18,3 +18,6 @@ pub(crate) mod kernels;
 pub(crate) mod nearest;
 pub mod patch_neighbors;
 pub(crate) mod spread;
+//! Search: the poses of a database that are most like others.
+//! - [`poses`]: the nearest segments of poses, and the graph of neighbours.
+pub mod poses;

@@ -1,0 +1,240 @@
+//! What tells early that a segment is not among the nearest.
+//!
+//! A *shadow* of a pose are its coordinates along the few directions in which poses differ most: two shadows are never farther
+//! apart than the poses. Motion is slow beside the distances between motions, so of each passage of a few segments the shadow of
+//! the middle one is looked at first, then the shadows of the others, then the segments. Nothing is lost.
+
+use super::kernels::{self, LANES, Probe, TILE};
+use super::principal::directions;
+use super::{Best, Segments};
+use crate::parallel::{self, Interrupt};
+use crate::{Error, Real};
+use std::ops::Range;
+
+/// Numbers of a shadow: on motions they hold nine tenths of the variance of poses.
+const WIDTH: usize = LANES;
+
+/// Segments of a passage: more of them are farther apart, fewer save less.
+pub(super) const PASSAGE: usize = 8;
+
+/// Poses of a task.
+const TASK: usize = 4096;
+
+/// A passage.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Block<T> {
+    first: usize,
+    count: usize,
+    /// The largest distance of a shadow from that of the middle one; infinite where it cannot be told.
+    radius: T,
+}
+
+impl<T: Real> Block<T> {
+    /// Its segments.
+    pub(super) fn ends(&self) -> Range<usize> {
+        self.first..self.first + self.count
+    }
+
+    /// The segment in its middle.
+    fn middle(&self) -> usize {
+        self.first + self.count / 2
+    }
+}
+
+/// Shadows of all poses, and passages of all candidates: `72 + 8·length` bytes for each pose in float32.
+#[derive(Debug, Clone)]
+pub struct Index<T> {
+    /// Directions, `(WIDTH, dims)`.
+    basis: Vec<T>,
+    /// Shadows, `(poses, WIDTH)`.
+    shadows: Vec<T>,
+    /// The passages.
+    pub(super) blocks: Vec<Block<T>>,
+    /// Shadows of their middles in tiles: the first numbers of all of a tile, then the second ones.
+    middles: Vec<T>,
+    /// How much nearer than their shadows two segments can seem for roundings, for each unit of their lengths.
+    rounding: T,
+    /// The greatest length of a segment.
+    largest: T,
+    length: usize,
+}
+
+impl<T: Real> Index<T> {
+    /// Looks at all poses of `segments` once.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    pub fn new(segments: &Segments<'_, T>, interrupt: &Interrupt) -> Result<Self, Error> {
+        let (dims, poses, length) = (segments.dims(), segments.poses(), segments.length());
+        let basis: Vec<T> = directions(segments, WIDTH).into_iter().map(T::from_f64).collect();
+        let mut shadows = vec![T::ZERO; poses * WIDTH];
+        let tasks: Vec<_> =
+            segments.features().chunks(TASK * dims).zip(shadows.chunks_mut(TASK * WIDTH)).collect();
+        let largest = parallel::map(tasks, poses * dims * 2, |_, (rows, shadows)| {
+            interrupt.check()?;
+            Ok(shade(&basis, rows, dims, shadows))
+        })?;
+        let largest = largest.into_iter().fold(T::ZERO, Real::max) * T::from_f64(length as f64).sqrt();
+        let mut blocks = Vec::with_capacity(poses / PASSAGE + segments.clips().len());
+        for ends in segments.clips() {
+            for first in ends.clone().step_by(PASSAGE) {
+                blocks.push(Block { first, count: PASSAGE.min(ends.end - first), radius: T::ZERO });
+            }
+        }
+        let width = WIDTH * length;
+        let mut middles = vec![T::ZERO; blocks.len().next_multiple_of(TILE) * width];
+        let tasks: Vec<_> = blocks.chunks_mut(TILE).zip(middles.chunks_exact_mut(TILE * width)).collect();
+        parallel::for_each(tasks, poses * length * 8, |_, (blocks, middles)| {
+            interrupt.check()?;
+            let mut probe = Probe::new(&[]);
+            let mut squares = [T::ZERO; PASSAGE];
+            for (place, block) in blocks.iter_mut().enumerate() {
+                let middle = block.middle();
+                let shadow = rows(&shadows, length, &(middle..middle + 1));
+                for (number, x) in shadow.iter().enumerate() {
+                    middles[number * TILE + place] = *x;
+                }
+                probe.set(shadow);
+                let squares = &mut squares[..block.count];
+                kernels::in_sequence(rows(&shadows, length, &block.ends()), WIDTH, &probe, squares);
+                block.radius = radius(squares, squares[middle - block.first]);
+            }
+            Ok(())
+        })?;
+        let rounding = T::EPSILON * T::from_f64((4 * (dims + width)) as f64);
+        Ok(Self { basis, shadows, blocks, middles, rounding, largest, length })
+    }
+
+    /// A query, with its shadow.
+    pub(super) fn query(&self, values: &[T], dims: usize, excluded: Range<usize>) -> Query<T> {
+        let mut query = Query { probe: Probe::new(&[]), shadow: Probe::new(&[]), excluded, slack: T::ZERO };
+        self.set(&mut query, values, dims);
+        query
+    }
+
+    /// Makes it another query.
+    pub(super) fn set(&self, query: &mut Query<T>, values: &[T], dims: usize) {
+        let mut shadow = vec![T::ZERO; WIDTH * self.length];
+        let own = shade(&self.basis, values, dims, &mut shadow) * T::from_f64(self.length as f64).sqrt();
+        query.probe.set(values);
+        query.shadow.set(&shadow);
+        query.slack = self.rounding * (self.largest + own) + T::TINY_SQUARE.sqrt();
+    }
+
+    /// Numbers of the memory of [`Index::search`].
+    pub(super) fn room(&self) -> usize {
+        self.blocks.len().next_multiple_of(TILE)
+    }
+
+    /// Offers the candidates nearest to a few queries to their lists, which may know some already.
+    pub(super) fn search(
+        &self,
+        segments: &Segments<'_, T>,
+        queries: &[Query<T>],
+        bests: &mut [Best<T>],
+        squares: &mut Vec<T>,
+    ) {
+        let (room, width) = (self.room(), WIDTH * self.length);
+        squares.resize(room * queries.len(), T::ZERO);
+        for (tile, middles) in self.middles.chunks_exact(TILE * width).enumerate() {
+            for (query, squares) in queries.iter().zip(squares.chunks_exact_mut(room)) {
+                kernels::tile(middles, query.shadow.values(), &mut squares[tile * TILE..(tile + 1) * TILE]);
+            }
+        }
+        if room > 0 {
+            for ((query, best), squares) in queries.iter().zip(bests).zip(squares.chunks_exact(room)) {
+                self.look(segments, query, &squares[..self.blocks.len()], best);
+            }
+        }
+    }
+
+    /// Offers the candidates nearest to a query, given the squared distances of its shadow from those of the passages' middles.
+    fn look(&self, segments: &Segments<'_, T>, query: &Query<T>, squares: &[T], best: &mut Best<T>) {
+        if !query.probe.is_finite() {
+            return;
+        }
+        // Those whose middles are nearest, to know early how near the nearest are.
+        let mut first = Best::new(2 * (best.count() / PASSAGE + 2));
+        for (block, square) in squares.iter().enumerate() {
+            first.offer(*square, block);
+        }
+        for &(_, block) in first.found() {
+            self.measure(segments, query, block, best);
+        }
+        let above = T::ONE + self.rounding;
+        let mut far = query.far(best, self.rounding);
+        for (block, square) in squares.iter().enumerate() {
+            let reach = (far + self.blocks[block].radius) * above;
+            // Not the other way round: where nothing is known the square is no number.
+            if *square > reach * reach {
+                continue;
+            }
+            self.measure(segments, query, block, best);
+            far = query.far(best, self.rounding);
+        }
+    }
+
+    /// Offers the segments of a passage.
+    fn measure(&self, segments: &Segments<'_, T>, query: &Query<T>, block: usize, best: &mut Best<T>) {
+        let ends = self.blocks[block].ends();
+        let mut squares = [T::ZERO; PASSAGE];
+        kernels::in_sequence(
+            rows(&self.shadows, self.length, &ends),
+            WIDTH,
+            &query.shadow,
+            &mut squares[..ends.len()],
+        );
+        let far = query.far(best, self.rounding);
+        for (end, square) in ends.zip(squares) {
+            if square > far * far || query.excluded.contains(&end) {
+                continue;
+            }
+            let mut exact = [T::ZERO];
+            kernels::in_sequence(segments.at(end), segments.dims(), &query.probe, &mut exact);
+            best.offer(exact[0], end);
+        }
+    }
+}
+
+/// A query, with its shadow.
+#[derive(Debug, Clone)]
+pub(super) struct Query<T> {
+    probe: Probe<T>,
+    shadow: Probe<T>,
+    pub(super) excluded: Range<usize>,
+    slack: T,
+}
+
+impl<T: Real> Query<T> {
+    /// The distance of shadows from which on no segment is among the best.
+    fn far(&self, best: &Best<T>, rounding: T) -> T {
+        let above = T::ONE + rounding;
+        best.limit().map_or(T::ONE / T::ZERO, |limit| (limit.sqrt() * above + self.slack) * above)
+    }
+}
+
+/// The shadows of the poses of candidates in sequence.
+fn rows<'a, T: Real>(shadows: &'a [T], length: usize, ends: &Range<usize>) -> &'a [T] {
+    &shadows[(ends.start + 1 - length) * WIDTH..ends.end * WIDTH]
+}
+
+/// Writes the shadows of poses, and says how long the longest pose is.
+fn shade<T: Real>(basis: &[T], poses: &[T], dims: usize, shadows: &mut [T]) -> T {
+    let mut largest = T::ZERO;
+    for (pose, shadow) in poses.chunks_exact(dims).zip(shadows.chunks_exact_mut(WIDTH)) {
+        kernels::products(basis, pose, shadow);
+        let square = pose.iter().fold(T::ZERO, |sum, x| sum + *x * *x);
+        if square > largest {
+            largest = square;
+        }
+    }
+    largest.sqrt()
+}
+
+/// The largest distance, but for segments that are no candidates for lack of numbers; infinite if the middle one is none itself.
+fn radius<T: Real>(squares: &[T], middle: T) -> T {
+    if !middle.is_finite() {
+        return T::ONE / T::ZERO;
+    }
+    squares.iter().fold(T::ZERO, |largest, &square| if square > largest { square } else { largest }).sqrt()
+}

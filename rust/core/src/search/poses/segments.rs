@@ -1,0 +1,161 @@
+//! Segments of poses in a matrix of clips that lie one after the other.
+
+use crate::error::check_length;
+use crate::{Error, Real};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Which segments of a matrix are candidates: a bit for each pose.
+#[derive(Debug)]
+pub struct Layout {
+    dims: usize,
+    length: usize,
+    clips: Vec<Range<usize>>,
+    /// Whether a candidate ends at a pose.
+    members: Vec<u64>,
+}
+
+/// The segments of `length` poses of a borrowed matrix `(poses, dims)`.
+#[derive(Debug, Clone)]
+pub struct Segments<'a, T> {
+    features: &'a [T],
+    layout: Arc<Layout>,
+}
+
+impl<'a, T: Real> Segments<'a, T> {
+    /// Views `features`, in C order. `starts` are the first poses of the clips, and the number of poses; `successors`, how many
+    /// poses of the clip must follow a candidate.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if `starts` do not rise from 0, or `dims` or `length` is 0; [`Error::Length`] if they end elsewhere
+    /// than the poses.
+    pub fn new(
+        features: &'a [T],
+        dims: usize,
+        starts: &[usize],
+        length: usize,
+        successors: usize,
+    ) -> Result<Self, Error> {
+        if dims == 0 || length == 0 {
+            return Err(Error::Parameter { name: "queries", expected: "poses of at least one number" });
+        }
+        let poses = features.len() / dims;
+        if starts.first() != Some(&0) || starts.windows(2).any(|pair| pair[0] > pair[1]) {
+            return Err(Error::Parameter { name: "starts", expected: "numbers that rise from 0" });
+        }
+        check_length("starts", poses, starts.last().copied().unwrap_or_default())?;
+        check_length("features", poses * dims, features.len())?;
+        let clips = starts
+            .windows(2)
+            .map(|pair| pair[0] + length - 1..pair[1].saturating_sub(successors))
+            .filter(|ends| !ends.is_empty())
+            .collect::<Vec<_>>();
+        let mut members = vec![0; poses.div_ceil(64)];
+        for end in clips.iter().cloned().flatten() {
+            members[end / 64] |= 1 << (end % 64);
+        }
+        Ok(Self { features, layout: Arc::new(Layout { dims, length, clips, members }) })
+    }
+
+    /// Views `features` again as segments had viewed them that had this layout.
+    ///
+    /// # Errors
+    /// [`Error::Length`] if the matrix is of another size.
+    pub fn again(features: &'a [T], layout: &Arc<Layout>) -> Result<Self, Error> {
+        let segments = Self { features, layout: Arc::clone(layout) };
+        check_length("features", layout.members.len(), segments.poses().div_ceil(64))?;
+        check_length("features", segments.poses() * layout.dims, features.len())?;
+        Ok(segments)
+    }
+
+    /// Which of them are candidates, to view the same matrix [`again`](Self::again).
+    #[must_use]
+    pub fn layout(&self) -> &Arc<Layout> {
+        &self.layout
+    }
+
+    /// Numbers of a pose.
+    #[must_use]
+    pub fn dims(&self) -> usize {
+        self.layout.dims
+    }
+
+    /// Poses of a segment.
+    #[must_use]
+    pub fn length(&self) -> usize {
+        self.layout.length
+    }
+
+    /// Numbers of a segment.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.layout.length * self.layout.dims
+    }
+
+    /// How many poses there are.
+    #[must_use]
+    pub fn poses(&self) -> usize {
+        self.features.len() / self.layout.dims
+    }
+
+    /// How many candidates there are.
+    #[must_use]
+    pub fn candidates(&self) -> usize {
+        self.layout.clips.iter().map(Range::len).sum()
+    }
+
+    /// The candidates of each clip that has some.
+    #[must_use]
+    pub fn clips(&self) -> &[Range<usize>] {
+        &self.layout.clips
+    }
+
+    /// Whether a candidate ends at a pose.
+    #[inline(always)]
+    #[must_use]
+    pub fn contains(&self, end: usize) -> bool {
+        self.layout.members.get(end / 64).is_some_and(|word| word >> (end % 64) & 1 == 1)
+    }
+
+    /// The numbers of the candidate that ends at a pose.
+    #[inline(always)]
+    #[must_use]
+    pub fn at(&self, end: usize) -> &'a [T] {
+        &self.features[(end + 1 - self.layout.length) * self.layout.dims..(end + 1) * self.layout.dims]
+    }
+
+    /// The numbers of the poses of candidates in sequence.
+    #[inline(always)]
+    pub(super) fn rows(&self, ends: &Range<usize>) -> &'a [T] {
+        &self.features[(ends.start + 1 - self.layout.length) * self.layout.dims..ends.end * self.layout.dims]
+    }
+
+    /// The matrix.
+    pub(super) fn features(&self) -> &'a [T] {
+        self.features
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn segments_lie_within_clips_and_have_successors() {
+        let features = [0.0_f32; 14];
+        let segments = Segments::new(&features, 2, &[0, 4, 4, 7], 2, 1).expect("they fit");
+        assert_eq!(segments.clips(), [1..3, 5..6]);
+        let ends: Vec<usize> = (0..9).filter(|&end| segments.contains(end)).collect();
+        assert_eq!(ends, [1, 2, 5]);
+        assert_eq!((segments.candidates(), segments.at(1).len()), (3, 4));
+    }
+
+    #[test]
+    fn borders_that_fall_are_refused() {
+        let features = [0.0_f32; 6];
+        let falling = Segments::new(&features, 2, &[0, 3, 2, 3], 1, 0).expect_err("they fall");
+        assert_eq!(falling.to_string(), "starts: expected numbers that rise from 0");
+        let short = Segments::new(&features, 2, &[0, 2], 1, 0).expect_err("a pose is left");
+        assert_eq!(short.to_string(), "starts: expected 3 elements, got 2");
+    }
+}

@@ -1,0 +1,129 @@
+"""Pose search: the core against the reference."""
+
+import numpy as np
+import pytest
+import tolerances
+from hypothesis import given
+from hypothesis import strategies as st
+from quatfilt import _core, _reference
+from quatfilt._reference.search.poses import square_distances
+
+
+def walks(rng, poses, dims, roughness, dtype):
+    """Return paths of poses."""
+    steps = np.cumsum(rng.standard_normal((poses, dims)), axis=0) / 10
+    steps += roughness * rng.standard_normal((poses, dims))
+    return steps.astype(dtype)
+
+
+def borders(rng, poses):
+    """Return the borders of some clips, one of which is empty."""
+    inner = np.sort(rng.integers(0, poses + 1, 3))
+    return np.array([0, *inner, inner[-1], poses], np.int64)
+
+
+def agree(result, expected, features, query_of):
+    """Compare neighbours: where two are nearly as near, either may come first."""
+    (indices, distances), (others, expected_distances) = result, expected
+    assert indices.dtype == others.dtype
+    assert distances.dtype == expected_distances.dtype
+    np.testing.assert_array_equal(indices < 0, others < 0)
+    np.testing.assert_allclose(distances, expected_distances, rtol=tolerances.distance(features.dtype))
+    for i, e in np.argwhere(indices != others):
+        square = square_distances(features, indices[i, e : e + 1], query_of(i))
+        np.testing.assert_allclose(
+            np.sqrt(square), expected_distances[i, e], rtol=tolerances.distance(features.dtype)
+        )
+
+
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    poses=st.sampled_from([1, 5, 40, 700]),
+    dims=st.sampled_from([1, 5, 32, 93]),
+    length=st.integers(1, 4),
+    number=st.sampled_from([1, 3, 12]),
+    roughness=st.sampled_from([0.0, 0.3, 3.0]),
+    dtype=st.sampled_from([np.float32, np.float64]),
+)
+def test_nearest_segments(seed, poses, dims, length, number, roughness, dtype):
+    rng = np.random.default_rng(seed)
+    features = walks(rng, poses, dims, roughness, dtype)
+    features[rng.random(poses) < 0.01] = np.nan
+    starts = borders(rng, poses)
+    queries = walks(rng, number * length, dims, roughness, dtype).reshape(number, length, dims)
+    excluded = np.sort(rng.integers(0, poses + 1, (number, 2))) if seed % 2 else None
+    k, successors = int(rng.integers(1, 50)), int(rng.integers(0, 3))
+    before = features.tobytes(), queries.tobytes()
+    arguments = features, starts, queries, k, successors, excluded
+    agree(
+        _core.nearest_segments(*arguments),
+        _reference.nearest_segments(*arguments),
+        features,
+        lambda i: queries[i],
+    )
+    assert (features.tobytes(), queries.tobytes()) == before, "the input was written"
+
+
+@pytest.mark.parametrize("number", [1, 5])
+def test_many_poses(number):
+    rng = np.random.default_rng(0)
+    features = walks(rng, 40_000, 30, 0.0, np.float32)
+    starts = borders(rng, 40_000)
+    queries = features[rng.integers(0, 39_000, (number, 1)) + np.arange(3)] + np.float32(0.01)
+    arguments = features, starts, queries, 64, 1, None
+    agree(
+        _core.nearest_segments(*arguments),
+        _reference.nearest_segments(*arguments),
+        features,
+        lambda i: queries[i],
+    )
+
+
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    poses=st.sampled_from([1, 20, 150]),
+    length=st.integers(1, 3),
+    degree=st.sampled_from([1, 6, 40]),
+    exclusion=st.sampled_from([0, 3, 500]),
+    dtype=st.sampled_from([np.float32, np.float64]),
+)
+def test_neighbor_graph(seed, poses, length, degree, exclusion, dtype):
+    rng = np.random.default_rng(seed)
+    features = walks(rng, poses, 20, 0.1, dtype)
+    features[rng.random(poses) < 0.02] = np.nan
+    arguments = features, borders(rng, poses), degree, length, 1, exclusion
+    agree(
+        _core.neighbor_graph(*arguments),
+        _reference.neighbor_graph(*arguments),
+        features,
+        lambda i: features[i + 1 - length : i + 1],
+    )
+
+
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    length=st.integers(1, 3),
+    degree=st.sampled_from([1, 4]),
+    refresh=st.sampled_from([0, 5, 1000]),
+    ratio=st.sampled_from([1.0, 1.2, np.inf]),
+)
+def test_walk(seed, length, degree, refresh, ratio):
+    rng = np.random.default_rng(seed)
+    features = walks(rng, 400, 12, 0.0, np.float64)
+    starts = borders(rng, 400)
+    graph, _ = _core.neighbor_graph(features, starts, degree, 1, 1, 5)
+    ours, theirs = (
+        backend.segment_walk(features, starts, graph, 6, length, 1, refresh, ratio)
+        for backend in (_core, _reference)
+    )
+    path = walks(rng, 60, 12, 0.0, np.float64)
+    path[rng.random(60) < 0.02] = np.nan
+    for t in range(60 - length):
+        if t == 40:
+            ours.reset()
+            theirs.reset()
+        query = path[t : t + length]
+        result, expected = (walk.next(query, t, t + 10) for walk in (ours, theirs))
+        np.testing.assert_array_equal(result[0], expected[0])
+        np.testing.assert_allclose(result[1], expected[1], rtol=tolerances.distance(np.float64))
+        assert result[2] == expected[2]
