@@ -70,6 +70,13 @@ def build(
             "--workers", metavar="N", help="How many files are read at once. [default: one per processor]"
         ),
     ] = None,
+    graph: Annotated[
+        bool,
+        typer.Option(
+            "--graph",
+            help="Find the neighbours of each pose too; it takes a few minutes for a million poses.",
+        ),
+    ] = False,
     json: _options.Json = False,
 ) -> None:
     """Make a database of the poses of many motion files.
@@ -96,6 +103,9 @@ def build(
         except OtherJointsError as error:
             raise ValueError(f"{error}; --skip-others leaves out files of other joints than most") from None
     db = MotionDatabase.open(output)
+    if graph:
+        db.build_graph()
+        db.save(output)
     if json:
         _output.print_json(describe(output, db))
         return

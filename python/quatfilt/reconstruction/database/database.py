@@ -9,12 +9,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from quatfilt import _validation
 from quatfilt._backend import ops
+from quatfilt._typing import Array
 from quatfilt.motion.motion import Motion
 from quatfilt.motion.skeleton import Skeleton
 from quatfilt.reconstruction.database import building, file
 from quatfilt.reconstruction.database.contents import Contents
 from quatfilt.reconstruction.database.folders import Folders
 from quatfilt.reconstruction.database.takes import Axis, How
+from quatfilt.search.poses import nearest_segments, neighbor_graph
 
 PathLike = str | os.PathLike[str]
 
@@ -338,6 +340,55 @@ class MotionDatabase:
             f"MotionDatabase({len(self)} pose{'s' * (len(self) != 1)} of {joints} joint{'s' * (joints != 1)}, "
             f"{clips} clip{'s' * (clips != 1)}, {self.fps:g} fps)"
         )
+
+    def nearest(
+        self,
+        queries: ArrayLike,
+        *,
+        k: int = 64,
+        successors: int = 1,
+        exclude: ArrayLike | None = None,
+    ) -> tuple[NDArray[np.int64], Array]:
+        """Find the segments of poses that are nearest to others, exactly: `nearest_segments` on `features` and `starts`.
+
+        Parameters
+        ----------
+        queries, k, successors, exclude
+            As there.
+
+        Returns
+        -------
+        indices : ndarray of int64, shape (queries, k) or (k,)
+            The last poses of the segments, nearest first; −1 where there are fewer.
+        distances : ndarray of float32, shape (queries, k) or (k,)
+            Their distances; infinite where there are fewer.
+
+        Raises
+        ------
+        ValueError, TypeError
+            As there.
+        """
+        return nearest_segments(
+            self.features, self.starts, queries, k=k, successors=successors, exclude=exclude
+        )
+
+    def build_graph(self, *, degree: int = 16, exclusion: float = 0.25) -> None:
+        """Find the neighbours of each pose, for `PoseSearch`: sets `graph` to what `neighbor_graph` finds.
+
+        Parameters
+        ----------
+        degree : int, default 16
+            How many neighbours each pose has.
+        exclusion : float, seconds, default 0.25
+            Poses of the same clip that are at most so far away in time are no neighbours.
+
+        Raises
+        ------
+        ValueError, TypeError
+            As there.
+        """
+        frames = round(_validation.number(exclusion, "exclusion", at_least=0) * self.fps)
+        self.graph, _ = neighbor_graph(self.features, self.starts, degree=degree, exclusion=frames)
 
     def motion(self, clip: int) -> Motion:
         """Return a clip as a motion again, with its heading and its own skeleton.
