@@ -97,10 +97,10 @@ mod tests {
     #[test]
     fn directions_are_at_right_angles_and_hold_the_variance() {
         let dims = 20;
-        let features: Vec<f32> = (0..200 * dims)
+        let features: Vec<f64> = (0..200 * dims)
             .map(|i| {
                 let (pose, dim) = ((i / dims) as f64, (i % dims) as f64);
-                (f64::from(Real::sin_cos((pose * (1.0 + dim)) % 100.0).0 as f32) / (1.0 + dim)) as f32
+                Real::sin_cos((pose * (1.0 + dim)) % 100.0).0 / (1.0 + dim)
             })
             .collect();
         let segments = Segments::new(&features, dims, &[0, 200], 1, 0).expect("they fit");
@@ -111,5 +111,21 @@ mod tests {
                 assert!((product - f64::from(u8::from(i == j))).abs() < 1e-12);
             }
         }
+        let variance = |vector: &[f64]| -> f64 {
+            let along =
+                features.chunks_exact(dims).map(|row| row.iter().zip(vector).map(|(x, y)| x * y).sum());
+            let along: Vec<f64> = along.collect();
+            let mean = along.iter().sum::<f64>() / 200.0;
+            along.iter().map(|x| (x - mean).powi(2)).sum()
+        };
+        let total: f64 = (0..dims)
+            .map(|dim| {
+                let mut axis = vec![0.0; dims];
+                axis[dim] = 1.0;
+                variance(&axis)
+            })
+            .sum();
+        let held: f64 = basis.chunks_exact(dims).map(variance).sum();
+        assert!(held > 0.85 * total && held <= total * (1.0 + 1e-12), "{held} of {total}");
     }
 }
