@@ -46,7 +46,9 @@ def test_parameters(name, case):
 
 MESSAGES = {
     "rotations: expected shape (frames, joints, 4) or (frames, 4), got (4,)": lambda: PGA().fit(np.ones(4)),
-    "rotations: expected unit quaternions, got norm 2 at frame 0, joint 0": lambda: PGA().fit(2 * clip()[:1]),
+    "rotations: expected unit quaternions, got norm 2 at frame 0, joint 0": lambda: PGA().fit(
+        np.array([[2.0, 0, 0, 0]])
+    ),
     "rotations: expected at least one sample, got none": lambda: PGA().fit(clip()[:0]),
     "rotations: expected samples less than π − 0.001 rad from their mean, got 3.1409 rad (180.0°) at joint 0": (
         lambda: PGA().fit(about_z(*[0.0] * 10_000, 179.98))
