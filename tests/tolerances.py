@@ -78,6 +78,8 @@ its root."""
 
 TRACK = 1e-8
 """Units and energies of a motion of tens of frames, each of which starts from the one before: roundings add up."""
+
+
 def distance(dtype):
     """Return the relative tolerance for distances of segments by the dtype of the poses."""
     return SEGMENT_DISTANCE[np.dtype(dtype)]

@@ -23,8 +23,8 @@ from quatfilt.cli.denoise import denoise
 from quatfilt.cli.evaluate import evaluate
 from quatfilt.cli.info import info
 from quatfilt.cli.pga import pga
-from quatfilt.cli.segment import segment
 from quatfilt.cli.reconstruct import reconstruct
+from quatfilt.cli.segment import segment
 
 app = typer.Typer(
     name="quatfilt",

@@ -1,2 +1,1 @@
-"""Search for similar patches of motions."""
-"""Search for similar poses."""
+"""Search for similar patches and poses."""

@@ -8,11 +8,10 @@
 //! - foundation: [`error`], [`real`] (float32 and float64), [`clip`] (borrowed views and aligned planes),
 //!   [`elementary`] (vectorisable functions), [`simd`] (run-time dispatch), [`parallel`] (the thread pool);
 //! - [`rotations`]: algebra, continuity, resampling;
-//! - [`search`]: the most similar patches;
+//! - [`search`]: the most similar patches and poses;
 //! - [`filters`]: filling of gaps;
 //! - [`noise`]: the noise level;
 //! - [`geodesics`]: principal geodesic analysis, compression and segmentation with geodesics;
-//! - [`search`]: nearest segments of poses, and their graph;
 //! - [`motion`]: forward kinematics;
 //! - [`reconstruction`]: motion from a few trajectories.
 //!

@@ -1,5 +1,4 @@
-//! Search for similar patches.
+//! Search for similar patches and poses.
 
 pub(crate) mod patch_neighbors;
-//! Search for similar poses.
 pub(crate) mod poses;

@@ -1,4 +1,4 @@
-//! Search: the patches of motions that are most like others.
+//! Search: the patches of motions, and the poses of a database, that are most like others.
 //!
 //! A patch is a frame with its surroundings in time. Along a diagonal, the pairs `(t, t + lag)`, the distance of two
 //! patches is a sliding sum over the distances of single frames, so the cost does not grow with the patch.
@@ -9,7 +9,8 @@
 //! - `nearest`: the most similar so far;
 //! - `join`: all diagonals between a block of frames and a block of candidates, or those that matter;
 //! - `spread`: how fast a motion changes, which tells the diagonals that do not matter;
-//! - `kernels`: the vectorised loops.
+//! - `kernels`: the vectorised loops;
+//! - [`poses`]: the nearest segments of poses in a database, and the graph of neighbours.
 
 pub(crate) mod diagonal;
 pub(crate) mod features;
@@ -17,7 +18,5 @@ pub(crate) mod join;
 pub(crate) mod kernels;
 pub(crate) mod nearest;
 pub mod patch_neighbors;
-pub(crate) mod spread;
-//! Search: the poses of a database that are most like others.
-//! - [`poses`]: the nearest segments of poses, and the graph of neighbours.
 pub mod poses;
+pub(crate) mod spread;
