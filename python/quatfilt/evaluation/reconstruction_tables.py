@@ -24,7 +24,7 @@ from quatfilt.evaluation.reconstruction_tables_conditions import (
     SHARES,
     TESTS,
     TWICE,
-    Test,
+    HeldOut,
 )
 from quatfilt.formats.files import read_motion
 from quatfilt.motion import metrics
@@ -138,7 +138,7 @@ class Recordings:
 def run(
     data: Path,
     *,
-    tests: Sequence[Test] = TESTS,
+    tests: Sequence[HeldOut] = TESTS,
     models: Sequence[str] = tuple(MODELS),
     progress: Callable[[int, int], None] | None = None,
 ) -> Tables:
@@ -148,7 +148,7 @@ def run(
     ----------
     data : Path
         Folder of CMU's recordings, a folder for each person.
-    tests : sequence of Test
+    tests : sequence of HeldOut
         The clips.
     models : sequence of str
         The local models.
@@ -229,7 +229,7 @@ class _Databases:
         self._kept: dict[tuple[str, int, bool], MotionDatabase] = {}
 
     def without(
-        self, test: Test, share: int = 1, *, absent: bool = False, known: bool = False
+        self, test: HeldOut, share: int = 1, *, absent: bool = False, known: bool = False
     ) -> MotionDatabase:
         """Return a database of one clip in `share`; without an action if `absent`; with the same person if `known`."""
         recordings = self._recordings
@@ -261,7 +261,7 @@ class _Databases:
 def _measured(
     database: MotionDatabase,
     truth: Motion,
-    test: Test,
+    test: HeldOut,
     *,
     model: str,
     points: int,
@@ -295,7 +295,7 @@ def _measured(
     )
 
 
-def limits(databases: _Databases, recordings: Recordings, tests: Sequence[Test]) -> list[Limit]:
+def limits(databases: _Databases, recordings: Recordings, tests: Sequence[HeldOut]) -> list[Limit]:
     """Try what the paper names: an action that is missing, and control points that conflict."""
     found = []
     for test in tests:
