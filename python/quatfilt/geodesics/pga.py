@@ -146,13 +146,14 @@ class PrincipalGeodesicAnalysis(_estimator.Estimator):
             components = _validation.integer(self.n_components, "n_components", at_least=1)
         objective = _validation.choice(self.objective, "objective", OBJECTIVES)
         tolerance = _validation.number(self.tol, "tol", at_least=0)
+        body = _validation.switch(self.body, "body")
         rotations, shape = self._clip(q)
         means, radius, unique = ops().geodesic_centre(rotations)
         _validation.centred(radius, unique)
         means = means.astype(rotations.dtype)
         joints = shape[1:-1]
-        most = MOST_BODY_COMPONENTS * len(means) if self.body else MOST_COMPONENTS
-        analysed = ops().body_geodesics if self.body else ops().principal_geodesics
+        most = MOST_BODY_COMPONENTS * len(means) if body else MOST_COMPONENTS
+        analysed = ops().body_geodesics if body else ops().principal_geodesics
         directions, residuals, descents = analysed(rotations, means, components, most, objective, tolerance)
         self.mean_ = _validation.scalar_order(means, scalar_first=self.scalar_first).reshape(*joints, 4)
         self.components_ = directions.reshape(len(directions), *joints, 3)

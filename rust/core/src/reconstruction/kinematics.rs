@@ -100,7 +100,7 @@ impl Body {
         3 * self.joints + WAY
     }
 
-    /// The coordinates that move control points, in the order of the columns of [`Points`].
+    /// The coordinates that move control points, in the order of the columns of the Jacobian.
     #[must_use]
     pub fn columns(&self) -> Vec<usize> {
         let of_joints = self.active.iter().flat_map(|joint| (0..3).map(move |i| 3 * joint.number + i));
