@@ -74,6 +74,7 @@ def test_of_a_motion_with_its_error(files, tmp_path):
             "control_points: expected joints of the database, got 'LeftWirst'; close to it: LeftWrist, ",
         ),
         (["--points", "points.csv", "--joints", "Head"], "--joints: expected with --motion"),
+        (["--points", "points.csv", "--fps", 0], "fps: expected a number above 0, got 0.0"),
         (["--points", "none.csv"], "none.csv: No such file or directory"),
         (["--points", "points.csv", "--model", "magic"], "model: expected one of 'local_regression'"),
     ],
@@ -96,6 +97,12 @@ def test_bad_options(files, arguments, message):
         ),
         ("Head.x,Head.y,Head.z\n1,2,3\n1,2\n", "bad.csv: line 3: expected 3 cells as in the header, got 2"),
         ("Head.x,Head.y,Head.z\n1,2,three\n", "bad.csv: line 2: expected a number, got 'three'"),
+        (
+            "\nHead.x,Head.y,Head.z\n1,2,3\n\n,,\n1,2\n",
+            "bad.csv: line 6: expected 3 cells as in the header, got 2",
+        ),
+        ("Head.x,Head.y,Head.z\n1,2,inf\n", "bad.csv: line 2: expected a number, got 'inf'"),
+        (f"Head.x,Head.y,Head.z\n1,2,{'3' * 200_000}\n", "bad.csv: line 2: field larger than field limit"),
         ("Head.x,Head.y,Head.z\n1,2,3\n", "bad.csv: expected a column time in seconds, or --fps"),
         (
             "time,Head.x,Head.y,Head.z\n0,1,2,3\n1,1,2,3\n5,1,2,3\n",

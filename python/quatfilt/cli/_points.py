@@ -1,6 +1,7 @@
 """Tables of control points: CSV files with a header."""
 
 import csv
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -56,17 +57,26 @@ def read(path: Path) -> Points:
         raise FileAccessError(path, error.strerror or "cannot be read") from None
     except UnicodeDecodeError:
         raise FileFormatError(path, None, "expected text in UTF-8") from None
-    rows = [row for row in csv.reader(text.splitlines(), skipinitialspace=True) if any(row)]
+    rows = _rows(path, text)
     if not rows:
         raise FileFormatError(path, None, "expected a header and rows, got nothing")
-    header = [cell.strip() for cell in rows[0]]
+    header = [cell.strip() for cell in rows[0][1]]
     joints = _joints(path, header)
-    values = np.array([_numbers(path, line, row, len(header)) for line, row in enumerate(rows[1:], 2)])
+    values = np.array([_numbers(path, line, row, len(header)) for line, row in rows[1:]])
     if not len(values):
         raise FileFormatError(path, None, "expected rows below the header, got none")
     columns = {name: values[:, place] for place, name in enumerate(header)}
     places = [np.stack([columns[f"{joint}.{axis}"] for axis in _AXES], axis=1) for joint in joints]
     return Points(joints, np.stack(places, axis=1), _rate(path, header, values))
+
+
+def _rows(path: Path, text: str) -> list[tuple[int, list[str]]]:
+    """Return the rows that are not blank, each with the number of its line."""
+    reader = csv.reader(text.splitlines(), skipinitialspace=True)
+    try:
+        return [(reader.line_num, row) for row in reader if any(row)]
+    except csv.Error as error:
+        raise FileFormatError(path, reader.line_num, str(error)) from None
 
 
 def _joints(path: Path, header: list[str]) -> tuple[str, ...]:
@@ -97,9 +107,12 @@ def _numbers(path: Path, line: int, row: list[str], columns: int) -> list[float]
     numbers = []
     for cell in row:
         try:
-            numbers.append(float(cell) if cell.strip() else float("nan"))
+            number = float(cell) if cell.strip() else math.nan
         except ValueError:
-            raise FileFormatError(path, line, f"expected a number, got {cell!r}") from None
+            number = math.inf
+        if math.isinf(number):
+            raise FileFormatError(path, line, f"expected a number, got {cell!r}")
+        numbers.append(number)
     return numbers
 
 

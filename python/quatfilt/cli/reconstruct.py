@@ -132,7 +132,7 @@ def _of_table(path: Path | None, joints: str | None, fps: float | None) -> _Give
     if joints is not None:
         raise ValueError("--joints: expected with --motion; the header of --points names the joints")
     table = _points.read(path)
-    rate = fps or table.fps
+    rate = table.fps if fps is None else fps
     if rate is None:
         raise ValueError(
             f"{path}: expected a column time in seconds, or --fps, to know how long a frame takes"
