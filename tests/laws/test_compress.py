@@ -44,6 +44,14 @@ def test_the_tolerance_holds(backend, q, tolerance, quantised):
     within(q, tolerance, quantised=quantised)
 
 
+@pytest.mark.parametrize("quantised", [True, False])
+def test_of_a_tolerance_below_all_roundings_samples_stay_as_they_are(backend, quantised):
+    assert backend.compress
+    q = clips.random_rotations(np.random.default_rng(0), 20, 2)
+    back = qf.compress(q, tolerance=1e-300, quantised=quantised).decompress()
+    np.testing.assert_array_equal(np.abs(back), np.abs(q))
+
+
 @settings(max_examples=10)
 @given(seed=seeds, dtype=dtypes, tolerance=st.sampled_from([1e-5, np.radians(0.1), 0.2]))
 def test_it_holds_for_noise_without_a_mean(backend, seed, dtype, tolerance):

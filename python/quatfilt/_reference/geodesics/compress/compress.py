@@ -139,6 +139,8 @@ def _within(
         joint = _Joint(components, missing, fit.width, [number for q in fit.numbers for number in q])
         if stepped:
             joint.step = _storable(step)
+            if joint.step == 0.0:  # too small to be stored
+                return None
             if fit.farthest * (series.STEP / joint.step) >= LARGEST:
                 return None
             numbers = round_even(fit.s[:, :components] * (series.STEP / joint.step)).astype(np.int64)
