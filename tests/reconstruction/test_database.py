@@ -370,6 +370,8 @@ def test_no_motions():
         qf.MotionDatabase.from_motions([])
     with pytest.raises(TypeError, match=r"^motions\[1\]: expected a Motion, got str$"):
         qf.MotionDatabase.from_motions([walk(seconds=1), "walk.bvh"])
+    with pytest.raises(TypeError, match=r"^motions: expected a sequence of Motions, got Motion$"):
+        qf.MotionDatabase.from_motions(walk(seconds=1))
     db = qf.MotionDatabase.from_motions([walk(seconds=1)])
     with pytest.raises(ValueError, match=r"^clip: expected an integer of at least -1 and at most 0, got 1$"):
         db.motion(1)

@@ -117,6 +117,8 @@ class MotionDatabase:
         TypeError
             If one of the motions is none.
         """
+        if not isinstance(motions, Iterable):
+            raise TypeError(f"motions: expected a sequence of Motions, got {type(motions).__name__}")
         given = list(motions)
         for number, motion in enumerate(given):
             if not isinstance(motion, Motion):
@@ -205,7 +207,7 @@ class MotionDatabase:
         path : str or path
             What `save` wrote.
         verify : bool, default False
-            Whether the whole file is read and compared with its check sums.
+            Whether the whole file is read and compared with its check sums, the arrays with a row for each pose too.
 
         Returns
         -------
