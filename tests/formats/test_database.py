@@ -212,6 +212,15 @@ def test_check_sums_of_arrays_are_compared_when_asked(path):
         assert re.fullmatch(rf"a damaged motion database: {name}.*", error.value.reason)
 
 
+@pytest.mark.parametrize("name", ["starts", "skeleton_indices", "offsets", "mean_rotations", "joint_weights"])
+def test_check_sums_of_short_arrays_are_always_compared(path, name):
+    data = bytearray(path.read_bytes())
+    section = json.loads(data[slice(*described(data))])["sections"][name]
+    data[section["offset"] + 2] ^= 4
+    path.write_bytes(data)
+    assert refused(path).startswith(f"a damaged motion database: {name}")
+
+
 def described(data):
     _, _, _, place, size, *_ = writer.HEADER.unpack(data[:64])
     return place, place + size
