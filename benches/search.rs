@@ -1,9 +1,12 @@
-//! Search: the most similar patches of every frame.
+//! Search: the most similar patches of every frame; the segments of a database nearest to others, and along a motion.
 
 use quatfilt_benches::clips;
 use quatfilt_benches::timer::Timer;
 use quatfilt_core::parallel::Interrupt;
 use quatfilt_core::search::patch_neighbors::PatchNeighbors;
+use quatfilt_core::search::poses::along::Along;
+use quatfilt_core::search::poses::graph::{self, Neighbors};
+use quatfilt_core::search::poses::{Index, Nearest, Segments, nearest};
 use quatfilt_core::{ClipView, Error, Real};
 
 fn main() -> Result<(), Error> {
@@ -12,7 +15,62 @@ fn main() -> Result<(), Error> {
         patch_neighbors::<f32>(&mut timer, size)?;
         patch_neighbors::<f64>(&mut timer, size)?;
     }
+    for size in timer.sizes(&[10_000, 100_000]) {
+        poses::<f32>(&mut timer, size)?;
+        poses::<f64>(&mut timer, size)?;
+    }
+    for size in timer.sizes(&[2_000]) {
+        neighbor_graph::<f32>(&mut timer, size)?;
+    }
     Ok(())
+}
+
+/// Segments of so many poses.
+const LENGTH: usize = 3;
+
+/// Neighbours of a query.
+const COUNT: usize = 64;
+
+/// Rows of poses, `(poses, 3 · joints)`.
+fn rows<T: Real>((poses, joints): (usize, usize), seed: u64) -> Vec<T> {
+    clips::rotation_vectors(poses, joints, seed).into_iter().map(T::from_f64).collect()
+}
+
+fn poses<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
+    let (poses, joints) = size;
+    let features = rows::<T>(size, 1);
+    let segments = Segments::new(&features, 3 * joints, &[0, poses], LENGTH, 1)?;
+    let path = rows::<T>((100, joints), 1);
+    let queries: Vec<&[T]> = path.windows(segments.width()).step_by(segments.dims()).collect();
+    let (mut indices, mut distances) = ([0; COUNT], [T::ZERO; COUNT]);
+    let interrupt = Interrupt::new();
+    timer.levels::<T, _, _>("search/nearest_segments", size, || {
+        let out = Nearest { count: COUNT, indices: &mut indices, distances: &mut distances };
+        nearest(&segments, None, queries[50], None, out, &interrupt)
+    })?;
+    let index = Index::new(&segments, &interrupt)?;
+    let mut along = Along::new(COUNT);
+    let mut frame = 0;
+    // There and back again, a frame a time.
+    timer.levels::<T, _, _>("search/along", size, || {
+        frame = (frame + 1) % (2 * queries.len());
+        let query = queries[frame.min(2 * queries.len() - 1 - frame)];
+        along.next(&segments, &index, query, &(0..0)).map(|best| best.found().len())
+    })
+}
+
+fn neighbor_graph<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
+    let (poses, joints) = size;
+    let features = rows::<T>(size, 1);
+    let segments = Segments::new(&features, 3 * joints, &[0, poses], 1, 1)?;
+    let degree = 16;
+    let (mut indices, mut distances) = (vec![0; poses * degree], vec![T::ZERO; poses * degree]);
+    let interrupt = Interrupt::new();
+    timer.levels::<T, _, _>("search/neighbor_graph", size, || {
+        let index = Index::new(&segments, &interrupt)?;
+        let out = Neighbors { degree, indices: &mut indices, distances: &mut distances };
+        graph::neighbors(&segments, &index, 15, out, &interrupt)
+    })
 }
 
 fn patch_neighbors<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {

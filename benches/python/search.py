@@ -1,4 +1,4 @@
-"""Search: patches of a clip beside a matrix product and beside FAISS."""
+"""Search: patches of a clip beside a matrix product and beside FAISS; poses of a database."""
 
 import os
 from collections.abc import Callable
@@ -6,6 +6,7 @@ from pathlib import Path
 
 import agreement
 import numpy as np
+import pose_search
 import quatfilt as qf
 from clips import JOINTS, Array, rotations
 from numpy.typing import NDArray
@@ -88,6 +89,7 @@ def run(repetitions: int) -> Results:
     if recorded is not None:
         _beside_peers(results, "recordings", recorded, repetitions, aims=(4, 10))
     _beside_peers(results, "waves that never repeat", waves, repetitions)
+    pose_search.measure(results, repetitions)
     return results
 
 

@@ -496,7 +496,7 @@ class SegmentWalk:
 def segment_walk(
     features: Array,
     starts: NDArray[np.int64],
-    graph: NDArray[np.int32],
+    graph: NDArray[np.int32] | None,
     k: int,
     length: int,
     successors: int,

@@ -23,6 +23,8 @@ CALLS = {
         20,
         'qf.nonlocal_pose_means(q, search_radius=None, bandwidth=0.05, chart="local", neighbors=8)',
     ),
+    "patches": (400_000, 20, "qf.patch_neighbors(q)"),
+    "graph of poses": (200_000, 20, "qf.neighbor_graph(q.reshape(len(q), -1), [0, len(q)])"),
     "axes of a wide body": (4_000, 400, "_core.smooth_body(q, q, None, np.full(400, 0.05))"),
 }
 """Frames, joints, and minutes of work."""

@@ -60,6 +60,15 @@ def test_options_and_json(takes, tmp_path):
     assert json.loads(run("database", "info", out, "--json", "--verify").stdout) == told
 
 
+def test_a_graph_is_built_on_request(takes, tmp_path):
+    out = tmp_path / "db"
+    run("database", "build", takes, "-o", out, "--graph")
+    db = qf.MotionDatabase.open(out, verify=True)
+    expected, _ = qf.neighbor_graph(db.features, db.starts, degree=16, exclusion=15)
+    np.testing.assert_array_equal(db.graph, expected)
+    assert "  graph: 16 neighbors of each pose" in run("database", "info", out).stdout.splitlines()
+
+
 def test_info(takes, tmp_path):
     out = tmp_path / "db"
     run("database", "build", takes, "-o", out)

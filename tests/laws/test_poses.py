@@ -210,3 +210,30 @@ def test_what_is_excluded_is_not_found_along_a_graph(backend):
     for t in range(200, 230):
         indices, _, _ = walk.next(features[t : t + 3], 121, 400)
         assert not ((indices >= 121) & (indices < 400)).any()
+
+
+@pytest.mark.parametrize("speed", [0.001, 0.1, 20.0])
+def test_a_search_without_a_graph_finds_in_each_frame_what_that_frame_alone_finds(backend, speed):
+    features = motions(dtype=np.float32)
+    steps = np.random.default_rng(3).standard_normal((200, features.shape[1]))
+    path = (features[200] + speed * np.cumsum(steps, axis=0)).astype(np.float32)
+    for t, (indices, distances, full) in enumerate(along(backend, features, None, path, 15, 1.5, k=16)):
+        expected = backend.nearest_segments(features, STARTS, path[None, t : t + 3], 16, 1, None)
+        assert full
+        np.testing.assert_array_equal(indices, expected[0][0])
+        np.testing.assert_array_equal(distances, expected[1][0])
+
+
+def test_a_motion_that_stands_still_and_then_leaps_is_found(backend):
+    features = motions()
+    path = np.concatenate([np.repeat(features[130:131], 300, axis=0), features[500:520]])
+    found = along(backend, features, None, path, 15, 1.5, k=4)
+    assert [indices[0] for indices, _, _ in found[-18:]] == list(range(502, 520))
+
+
+def test_what_was_excluded_is_found_when_it_is_not(backend):
+    features = motions()
+    walk = backend.segment_walk(features, STARTS, None, 4, 3, 1, 15, 1.5)
+    for t in range(200, 230):
+        walk.next(features[t : t + 3], 121, 400)
+    assert walk.next(features[230:233], 0, 0)[0][0] == 232

@@ -17,10 +17,13 @@ _LONGEST = 100_000
 class PoseSearch:
     """Find the nearest segments of a database for one frame of a motion after the other.
 
-    The nearest segments of one frame lie near those of the next: the candidates are the nearest of the frame before, the poses
-    after them, and the neighbours of both in a graph. All segments are looked at in the first frame, after every `refresh` frames,
-    where there are fewer than `k` candidates, and where the last of the nearest is more than `ratio` times as far as it was at
-    best since all were looked at. The distances are exact; what a search along the graph may miss are segments.
+    Without a graph the search is exact: what is found is what `nearest_segments` finds. It is faster in sequence, for what was far
+    from one frame cannot be near to the next, and is looked at again only when the motion has travelled far enough.
+
+    With a graph the candidates are the nearest of the frame before, the poses after them, and the neighbours of both. All segments
+    are looked at in the first frame, after every `refresh` frames, where there are fewer than `k` candidates, and where the last
+    of the nearest is more than `ratio` times as far as it was at best since all were looked at. The distances are exact; what a
+    search along the graph may miss are segments.
 
     Parameters
     ----------
@@ -28,8 +31,9 @@ class PoseSearch:
         Poses as vectors whose distances are those of the poses: `MotionDatabase.features`. A memory map is read in place.
     starts : array_like of int, shape (clips + 1,)
         The first pose of each clip, and the number of poses.
-    graph : array_like of int32, shape (poses, degree)
-        Neighbours of each pose, −1 where there are fewer: what `neighbor_graph` returns, or `MotionDatabase.graph`.
+    graph : array_like of int32, shape (poses, degree), or None, default None
+        Neighbours of each pose, −1 where there are fewer: what `neighbor_graph` returns, or `MotionDatabase.graph`. None: the
+        search is exact, and neither `refresh` nor `ratio` matters.
     k : int, default 64
         How many segments are found for each frame; from 1 to 100,000.
     length : int, poses, default 3
@@ -53,8 +57,9 @@ class PoseSearch:
 
     Notes
     -----
-    Cost of a frame: at most ``2·k·(degree + 1)`` segments; they overlap, and are fewer. Memory: 96 bytes for each pose, and 1 ms for
-    a thousand poses to set it up, besides `features` and `graph`.
+    Cost of a frame along a graph: at most ``2·k·(degree + 1)`` segments; they overlap, and are fewer. Without one: a bound for eight
+    poses, and a few hundredths of the poses. Memory: 100 bytes for each pose, and 1 ms for a thousand poses to set it up, besides
+    `features` and `graph`.
 
     References
     ----------
@@ -64,8 +69,7 @@ class PoseSearch:
     --------
     >>> import numpy as np, quatfilt as qf
     >>> features = np.sin(np.arange(400)[:, None] / [5.0, 7.0, 11.0])
-    >>> graph, _ = qf.neighbor_graph(features, [0, 400], degree=4)
-    >>> search = qf.PoseSearch(features, [0, 400], graph, k=2)
+    >>> search = qf.PoseSearch(features, [0, 400], k=2)
     >>> for frame in (100, 101):
     ...     indices, distances = search(features[frame - 2 : frame + 1] + 0.01)
     >>> indices
@@ -78,7 +82,7 @@ class PoseSearch:
         self,
         features: ArrayLike,
         starts: ArrayLike,
-        graph: ArrayLike,
+        graph: ArrayLike | None = None,
         *,
         k: int = 64,
         length: int = 3,
@@ -91,7 +95,7 @@ class PoseSearch:
         self._walk = ops().segment_walk(
             poses,
             _validation.starts(starts, "starts", len(poses)),
-            _validation.graph(graph, "graph", len(poses)),
+            None if graph is None else _validation.graph(graph, "graph", len(poses)),
             _validation.integer(k, "k", at_least=1, at_most=_MOST),
             steps,
             _validation.integer(successors, "successors", at_least=0, at_most=_LONGEST),
@@ -104,7 +108,7 @@ class PoseSearch:
 
     @property
     def full(self) -> bool:
-        """Whether all segments were looked at for the last frame."""
+        """Whether all segments were looked at for the last frame, or passed over for certain."""
         return self._full
 
     def __call__(

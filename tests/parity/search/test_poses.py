@@ -127,3 +127,38 @@ def test_walk(seed, length, degree, refresh, ratio):
         np.testing.assert_array_equal(result[0], expected[0])
         np.testing.assert_allclose(result[1], expected[1], rtol=tolerances.distance(np.float64))
         assert result[2] == expected[2]
+
+
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    length=st.integers(1, 3),
+    dims=st.sampled_from([1, 20]),
+    speed=st.sampled_from([0.0, 0.02, 1.0, 1e4]),
+    dtype=st.sampled_from([np.float32, np.float64]),
+)
+def test_along_a_motion_without_a_graph(seed, length, dims, speed, dtype):
+    rng = np.random.default_rng(seed)
+    features = walks(rng, 900, dims, 0.0, dtype)
+    features[rng.random(900) < 0.01] = np.nan
+    starts = borders(rng, 900)
+    path = (speed * walks(rng, 60, dims, 0.0, np.float64)).astype(dtype)
+    path[rng.random(60) < 0.02] = np.nan
+    k = int(rng.integers(1, 70))
+    ours, theirs = (
+        backend.segment_walk(features, starts, None, k, length, 1, 0, 1.0) for backend in (_core, _reference)
+    )
+    for t in range(60 - length):
+        if t == 40:
+            ours.reset()
+            theirs.reset()
+        query = path[t : t + length]
+        # What is left out changes from frame to frame.
+        result, expected = (walk.next(query, 10 * (t % 7), 300) for walk in (ours, theirs))
+        agree(
+            (result[0][None], result[1][None]), (expected[0][None], expected[1][None]), features, lambda _: query
+        )
+        assert result[2] == expected[2]
+        # To the last bit what a search of this frame alone finds.
+        alone = _core.nearest_segments(features, starts, query[None], k, 1, np.array([[10 * (t % 7), 300]]))
+        np.testing.assert_array_equal(result[0], alone[0][0])
+        np.testing.assert_array_equal(result[1], alone[1][0])

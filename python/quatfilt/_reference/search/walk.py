@@ -1,6 +1,7 @@
 """Search from frame to frame: the nearest segments of one frame lie near those of the next.
 
-J. Chai and J. K. Hodgins, *Performance animation from low-dimensional control signals*, SIGGRAPH 2005.
+Along a graph as in J. Chai and J. K. Hodgins, *Performance animation from low-dimensional control signals*,
+SIGGRAPH 2005; without one, the exact search of every frame.
 """
 
 import math
@@ -19,7 +20,7 @@ class SegmentWalk:
 
     features: Reals
     starts: NDArray[np.int64]
-    graph: NDArray[np.int32]
+    graph: NDArray[np.int32] | None
     k: int
     length: int
     successors: int
@@ -43,8 +44,8 @@ class SegmentWalk:
             return self._written(np.zeros(0, np.intp)), np.full(self.k, np.inf, query.dtype), False
         found: tuple[Indices, Reals] = np.zeros(0, np.intp), np.zeros(0)
         trusted = False
-        if self._since < self.refresh:
-            found = self._walk(query, first, last)
+        if self.graph is not None and self._since < self.refresh:
+            found = self._walk(self.graph, query, first, last)
             trusted = len(found[0]) == self.k and (
                 math.isinf(self.ratio) or math.sqrt(found[1][-1]) <= self.ratio * self._least
             )
@@ -69,10 +70,12 @@ class SegmentWalk:
         """Forget the frames before."""
         self._since = math.inf
 
-    def _walk(self, query: Reals, first: int, last: int) -> tuple[Indices, Reals]:
+    def _walk(
+        self, graph: NDArray[np.int32], query: Reals, first: int, last: int
+    ) -> tuple[Indices, Reals]:
         """Find the nearest of the nearest before, their successors, and the neighbours of both."""
-        near = [end for before in self._before for end in (before, before + 1) if end < len(self.graph)]
-        ends = np.intersect1d(np.concatenate([near, self.graph[near].ravel()]).astype(np.intp), self._ends)
+        near = [end for before in self._before for end in (before, before + 1) if end < len(graph)]
+        ends = np.intersect1d(np.concatenate([near, graph[near].ravel()]).astype(np.intp), self._ends)
         ends = ends[(ends < first) | (ends >= last)]
         squares = square_distances(self.features, ends, query)
         ends, squares = ends[np.isfinite(squares)], squares[np.isfinite(squares)]
@@ -88,7 +91,7 @@ class SegmentWalk:
 def segment_walk(
     features: Reals,
     starts: NDArray[np.int64],
-    graph: NDArray[np.int32],
+    graph: NDArray[np.int32] | None,
     k: int,
     length: int,
     successors: int,
@@ -97,7 +100,9 @@ def segment_walk(
 ) -> SegmentWalk:
     """Make a search along a motion for the `k` nearest segments of `length` poses.
 
-    In the first frame, and where it says so below, all segments are looked at. Otherwise the candidates are the nearest of the
+    Without a graph, each frame has all segments looked at; `refresh` and `ratio` do not matter then.
+
+    With one, in the first frame, and where it says so below, all segments are looked at. Otherwise the candidates are the nearest of the
     frame before, the poses after them, and the neighbours of both in `graph`, `(poses, degree)`.
 
     All segments are looked at again after `refresh` frames, where there are fewer than `k` candidates, and where the

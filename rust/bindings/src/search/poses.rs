@@ -5,6 +5,7 @@ use numpy::{Element, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedAr
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use quatfilt_core::Real;
+use quatfilt_core::search::poses::along::Along;
 use quatfilt_core::search::poses::graph::{self, Graph, Neighbors};
 use quatfilt_core::search::poses::walk::{Database, Trust, Walk};
 use quatfilt_core::search::poses::{self, Index, Layout, Nearest, Segments};
@@ -97,7 +98,7 @@ pub(crate) fn neighbor_graph(
 pub(crate) struct SegmentWalk {
     inner: Inner,
     features: Py<PyAny>,
-    graph: Py<PyArrayDyn<i32>>,
+    graph: Option<Py<PyArrayDyn<i32>>>,
 }
 
 enum Inner {
@@ -108,11 +109,18 @@ enum Inner {
 struct State<T> {
     layout: Arc<Layout>,
     index: Index<T>,
-    walk: Walk<T>,
+    search: Search<T>,
     count: usize,
 }
 
-/// A search along a motion for the `k` nearest segments, that starts with the next frame that is asked for.
+enum Search<T> {
+    /// Along a graph.
+    Walk(Walk<T>),
+    /// Exact.
+    Along(Along<T>),
+}
+
+/// A search along a motion for the `k` nearest segments, that starts with the next frame that is asked for; exact without a graph.
 #[pyfunction]
 #[pyo3(signature = (features, starts, graph, k, length, successors, refresh, ratio, /))]
 #[allow(clippy::too_many_arguments, reason = "the reference's positional arguments")]
@@ -120,7 +128,7 @@ pub(crate) fn segment_walk(
     py: Python<'_>,
     features: &Bound<'_, PyAny>,
     starts: &Bound<'_, PyAny>,
-    graph: &Bound<'_, PyAny>,
+    graph: Option<&Bound<'_, PyAny>>,
     k: usize,
     length: usize,
     successors: usize,
@@ -128,15 +136,19 @@ pub(crate) fn segment_walk(
     ratio: f64,
 ) -> PyResult<SegmentWalk> {
     let starts = numbers("starts", starts)?;
-    let trust = Trust { frames: refresh, ratio };
+    let trust = graph.map(|_| Trust { frames: refresh, ratio });
     let inner = if crate::array::is_float32(features)? {
         Inner::Float32(state(py, features, &starts, k, length, successors, trust)?)
     } else {
         Inner::Float64(state(py, features, &starts, k, length, successors, trust)?)
     };
-    let graph =
-        graph.cast::<PyArrayDyn<i32>>().map_err(|_| PyValueError::new_err("graph: expected int32"))?;
-    Ok(SegmentWalk { inner, features: features.clone().unbind(), graph: graph.clone().unbind() })
+    let graph = graph.map(Bound::cast::<PyArrayDyn<i32>>).transpose();
+    let graph = graph.map_err(|_| PyValueError::new_err("graph: expected int32"))?;
+    Ok(SegmentWalk {
+        inner,
+        features: features.clone().unbind(),
+        graph: graph.map(|graph| graph.clone().unbind()),
+    })
 }
 
 fn state<T: Real + Element>(
@@ -146,13 +158,17 @@ fn state<T: Real + Element>(
     count: usize,
     length: usize,
     successors: usize,
-    trust: Trust,
+    trust: Option<Trust>,
 ) -> PyResult<State<T>> {
     let features = input::<T>("features", features)?;
     let segments = segments(&features, starts, length, successors)?;
     let work = segments.poses().saturating_mul(segments.dims());
     let index = run_interruptible(py, work, |interrupt| Index::new(&segments, interrupt))?;
-    Ok(State { layout: Arc::clone(segments.layout()), index, walk: Walk::new(count, trust), count })
+    let search = match trust {
+        Some(trust) => Search::Walk(Walk::new(count, trust)),
+        None => Search::Along(Along::new(count)),
+    };
+    Ok(State { layout: Arc::clone(segments.layout()), index, search, count })
 }
 
 #[pymethods]
@@ -167,7 +183,7 @@ impl SegmentWalk {
         first: usize,
         last: usize,
     ) -> PyResult<(Py<PyAny>, Py<PyAny>, bool)> {
-        let (features, graph) = (self.features.bind(py), self.graph.bind(py));
+        let (features, graph) = (self.features.bind(py), self.graph.as_ref().map(|graph| graph.bind(py)));
         match &mut self.inner {
             Inner::Float32(state) => next(py, state, features, graph, query, &(first..last)),
             Inner::Float64(state) => next(py, state, features, graph, query, &(first..last)),
@@ -177,8 +193,17 @@ impl SegmentWalk {
     /// Forgets the frames before.
     fn reset(&mut self) {
         match &mut self.inner {
-            Inner::Float32(state) => state.walk.reset(),
-            Inner::Float64(state) => state.walk.reset(),
+            Inner::Float32(state) => state.search.reset(),
+            Inner::Float64(state) => state.search.reset(),
+        }
+    }
+}
+
+impl<T: Real> Search<T> {
+    fn reset(&mut self) {
+        match self {
+            Self::Walk(walk) => walk.reset(),
+            Self::Along(along) => along.reset(),
         }
     }
 }
@@ -187,18 +212,30 @@ fn next<T: Real + Element>(
     py: Python<'_>,
     state: &mut State<T>,
     features: &Bound<'_, PyAny>,
-    graph: &Bound<'_, PyArrayDyn<i32>>,
+    graph: Option<&Bound<'_, PyArrayDyn<i32>>>,
     query: &Bound<'_, PyAny>,
     excluded: &Range<usize>,
 ) -> PyResult<(Py<PyAny>, Py<PyAny>, bool)> {
     let features = input::<T>("features", features)?;
-    let neighbors = input::<i32>("graph", graph)?;
     let query = input::<T>("query", query)?;
+    let query = elements("query", &query)?;
     let segments = Segments::again(elements("features", &features)?, &state.layout).map_err(to_python)?;
-    let degree = neighbors.shape().last().copied().unwrap_or_default();
-    let graph = Graph::new(elements("graph", &neighbors)?, segments.poses(), degree).map_err(to_python)?;
-    let database = Database { segments: &segments, index: &state.index, graph };
-    let (best, all) = state.walk.next(database, elements("query", &query)?, excluded).map_err(to_python)?;
+    let index = &state.index;
+    let (best, all) = match (&mut state.search, graph) {
+        (Search::Along(along), _) => {
+            let best = along.next(&segments, index, query, excluded).map_err(to_python)?;
+            (best, query.iter().all(|x| x.is_finite()))
+        }
+        (Search::Walk(walk), Some(graph)) => {
+            let neighbors = input::<i32>("graph", graph)?;
+            let degree = neighbors.shape().last().copied().unwrap_or_default();
+            let graph =
+                Graph::new(elements("graph", &neighbors)?, segments.poses(), degree).map_err(to_python)?;
+            let database = Database { segments: &segments, index, graph };
+            walk.next(database, query, excluded).map_err(to_python)?
+        }
+        (Search::Walk(_), None) => return Err(PyValueError::new_err("graph: expected int32, got none")),
+    };
     let (indices, distances) = (output::<i64>(py, &[state.count]), output::<T>(py, &[state.count]));
     best.write(indices.readwrite().as_slice_mut()?, distances.readwrite().as_slice_mut()?);
     Ok((indices.into_any().unbind(), distances.into_any().unbind(), all))

@@ -174,8 +174,14 @@ impl<T: Real> Index<T> {
         }
     }
 
-    /// Offers the segments of a passage.
-    fn measure(&self, segments: &Segments<'_, T>, query: &Query<T>, block: usize, best: &mut Best<T>) {
+    /// Offers the segments of a passage, and says what none of them is nearer than.
+    pub(super) fn measure(
+        &self,
+        segments: &Segments<'_, T>,
+        query: &Query<T>,
+        block: usize,
+        best: &mut Best<T>,
+    ) -> T {
         let ends = self.blocks[block].ends();
         let mut squares = [T::ZERO; PASSAGE];
         kernels::in_sequence(
@@ -185,14 +191,56 @@ impl<T: Real> Index<T> {
             &mut squares[..ends.len()],
         );
         let far = query.far(best, self.rounding);
+        let (mut shadow, mut least) = (T::ONE / T::ZERO, T::ONE / T::ZERO);
         for (end, square) in ends.zip(squares) {
             if square > far * far || query.excluded.contains(&end) {
+                shadow = if square < shadow { square } else { shadow };
                 continue;
             }
-            let mut exact = [T::ZERO];
-            kernels::in_sequence(segments.at(end), segments.dims(), &query.probe, &mut exact);
-            best.offer(exact[0], end);
+            let exact = self.square(query, segments.at(end));
+            least = if exact < least { exact } else { least };
+            best.offer(exact, end);
         }
+        let above = T::ONE + self.rounding;
+        (shadow.sqrt() / above - query.slack).min(least.sqrt() / above)
+    }
+
+    /// The squared distance of a segment to a query.
+    pub(super) fn square(&self, query: &Query<T>, segment: &[T]) -> T {
+        let mut square = [T::ZERO];
+        kernels::in_sequence(segment, segment.len(), &query.probe, &mut square);
+        square[0]
+    }
+
+    /// What two queries are not farther apart than.
+    pub(super) fn distance(&self, query: &Query<T>, other: &[T]) -> T {
+        self.square(query, other).sqrt() * (T::ONE + self.rounding)
+    }
+
+    /// The squared distance of the shadow of the middle of a passage to that of a query.
+    pub(super) fn middle_square(&self, query: &Query<T>, block: usize) -> T {
+        let middle = self.blocks[block].middle();
+        let mut square = [T::ZERO];
+        let shadow = rows(&self.shadows, self.length, &(middle..middle + 1));
+        kernels::in_sequence(shadow, WIDTH, &query.shadow, &mut square);
+        square[0]
+    }
+
+    /// What no segment of a passage is nearer than to a query, given the squared distance of the shadow of its middle; no number
+    /// where nothing is known.
+    pub(super) fn below(&self, query: &Query<T>, block: usize, square: T) -> T {
+        let above = T::ONE + self.rounding;
+        square.sqrt() / (above * above) - self.blocks[block].radius * above - query.slack
+    }
+
+    /// The distance from which on no segment is among the best.
+    pub(super) fn near(&self, best: &Best<T>) -> T {
+        best.limit().map_or(T::ONE / T::ZERO, |limit| limit.sqrt() * (T::ONE + self.rounding))
+    }
+
+    /// The greatest length of a segment.
+    pub(super) fn largest(&self) -> T {
+        self.largest
     }
 }
 
@@ -206,6 +254,11 @@ pub(super) struct Query<T> {
 }
 
 impl<T: Real> Query<T> {
+    /// Whether all its numbers are finite.
+    pub(super) fn is_finite(&self) -> bool {
+        self.probe.is_finite()
+    }
+
     /// The distance of shadows from which on no segment is among the best.
     fn far(&self, best: &Best<T>, rounding: T) -> T {
         let above = T::ONE + rounding;

@@ -9,8 +9,10 @@
 //! - [`nearest`]: exact search;
 //! - [`graph`]: the nearest segments of every segment of the database;
 //! - [`walk`]: search from frame to frame, along the graph;
+//! - [`along`]: exact search from frame to frame;
 //! - `best`: the nearest so far; `kernels`: distances.
 
+pub mod along;
 mod best;
 pub mod graph;
 mod index;
