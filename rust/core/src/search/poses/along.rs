@@ -4,13 +4,12 @@
 //! the query has travelled some way, and by the triangle inequality the segments are at most so much nearer. Only where what
 //! remains is within reach of the nearest, the passage is looked at again. Nothing is lost.
 
+use super::index::Query;
+use super::kernels::TILE;
 use super::{Best, Index, Segments};
 use crate::error::check_length;
 use crate::{Error, Real};
 use std::ops::Range;
-
-/// Passages whose bounds are compared at once.
-const STRIP: usize = 16;
 
 /// How far a query travels before all is looked at again, in lengths of the longest segment: bounds are sums with the way so far,
 /// and round the more the longer it is.
@@ -73,7 +72,7 @@ impl<T: Real> Along<T> {
             self.travelled = (self.travelled + step) * (1.0 + 2.0 * f64::EPSILON);
         }
         if known && self.travelled <= JOURNEY * index.largest().to_f64() {
-            self.offer_those_before(segments, index, &made, excluded);
+            self.offer_those_before(segments, &made, excluded);
             self.look(segments, index, &made);
         } else {
             self.best.clear();
@@ -90,50 +89,44 @@ impl<T: Real> Along<T> {
     }
 
     /// Offers the nearest of the frame before and those after them, to know early how near the nearest are.
-    fn offer_those_before(
-        &mut self,
-        segments: &Segments<'_, T>,
-        index: &Index<T>,
-        query: &super::index::Query<T>,
-        excluded: &Range<usize>,
-    ) {
+    fn offer_those_before(&mut self, segments: &Segments<'_, T>, query: &Query<T>, excluded: &Range<usize>) {
         let mut ends: Vec<usize> = self.best.found().iter().flat_map(|&(_, end)| [end, end + 1]).collect();
         ends.sort_unstable();
         ends.dedup();
         self.best.clear();
         for end in ends {
             if segments.contains(end) && !excluded.contains(&end) {
-                self.best.offer(index.square(query, segments.at(end)), end);
+                self.best.offer(query.square(segments.at(end)), end);
             }
         }
     }
 
     /// Looks at the passages that may hold one of the nearest.
-    fn look(&mut self, segments: &Segments<'_, T>, index: &Index<T>, query: &super::index::Query<T>) {
+    fn look(&mut self, segments: &Segments<'_, T>, index: &Index<T>, query: &Query<T>) {
         let Self { best, travelled, bounds, .. } = self;
         let reach = |best: &Best<T>| {
-            let far = index.near(best);
-            (far, T::from_f64((far.to_f64() + *travelled) * (1.0 + 4.0 * T::EPSILON.to_f64())))
+            T::from_f64((index.near(best).to_f64() + *travelled) * (1.0 + 4.0 * T::EPSILON.to_f64()))
         };
-        let (mut far, mut within) = reach(best);
-        for (strip, bounds) in bounds.chunks_mut(STRIP).enumerate() {
-            // Not `<=`: where nothing is known the bound is no number.
-            #[allow(clippy::neg_cmp_op_on_partial_ord, reason = "a bound that is no number is within reach")]
-            let reached = |bound: T, within: T| !(bound > within);
+        let mut within = reach(best);
+        // Not `<=`: where nothing is known the bound is no number.
+        #[allow(clippy::neg_cmp_op_on_partial_ord, reason = "a bound that is no number is within reach")]
+        let reached = |bound: T, within: T| !(bound > within);
+        let mut squares = [T::ZERO; TILE];
+        for (tile, bounds) in bounds.chunks_mut(TILE).enumerate() {
             if !bounds.iter().fold(false, |any, &bound| any | reached(bound, within)) {
                 continue;
             }
-            for (place, bound) in bounds.iter_mut().enumerate() {
-                if !reached(*bound, within) {
-                    continue;
+            index.tile(query, tile, &mut squares);
+            for (place, (bound, square)) in bounds.iter_mut().zip(squares).enumerate() {
+                let block = tile * TILE + place;
+                let below = T::from_f64(index.below(query, block, square).to_f64() + *travelled);
+                // Of two bounds the higher says more.
+                *bound = if *bound > below { *bound } else { below };
+                if reached(*bound, within) {
+                    let below = index.measure(segments, query, block, best);
+                    *bound = T::from_f64(below.to_f64() + *travelled);
+                    within = reach(best);
                 }
-                let block = strip * STRIP + place;
-                let mut below = index.below(query, block, index.middle_square(query, block));
-                if reached(below, far) {
-                    below = index.measure(segments, query, block, best);
-                    (far, within) = reach(best);
-                }
-                *bound = T::from_f64(below.to_f64() + *travelled);
             }
         }
     }

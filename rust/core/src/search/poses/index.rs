@@ -1,8 +1,10 @@
 //! What tells early that a segment is not among the nearest.
 //!
 //! A *shadow* of a pose are its coordinates along the few directions in which poses differ most: two shadows are never farther
-//! apart than the poses. Motion is slow beside the distances between motions, so of each passage of a few segments the shadow of
-//! the middle one is looked at first, then the shadows of the others, then the segments. Nothing is lost.
+//! apart than the poses. The *course* of a segment is the mean of the shadows of its poses, times the root of their number: two
+//! courses are never farther apart than the segments, and hardly nearer, since poses in sequence are much alike. Motion is slow
+//! beside the distances between motions, so of each passage of a few segments the course of the middle one is looked at first,
+//! then the shadows of all, then the segments. Nothing is lost.
 
 use super::kernels::{self, LANES, Probe, TILE};
 use super::principal::directions;
@@ -25,7 +27,7 @@ const TASK: usize = 4096;
 pub(super) struct Block<T> {
     first: usize,
     count: usize,
-    /// The largest distance of a shadow from that of the middle one; infinite where it cannot be told.
+    /// The largest distance of a course from that of the middle one; infinite where it cannot be told.
     radius: T,
 }
 
@@ -41,7 +43,7 @@ impl<T: Real> Block<T> {
     }
 }
 
-/// Shadows of all poses, and passages of all candidates: `72 + 8·length` bytes for each pose in float32.
+/// Shadows of all poses, and passages of all candidates: 76 bytes for each pose in float32.
 #[derive(Debug, Clone)]
 pub struct Index<T> {
     /// Directions, `(WIDTH, dims)`.
@@ -50,7 +52,7 @@ pub struct Index<T> {
     shadows: Vec<T>,
     /// The passages.
     pub(super) blocks: Vec<Block<T>>,
-    /// Shadows of their middles in tiles: the first numbers of all of a tile, then the second ones.
+    /// Courses of their middles in tiles: the first numbers of all of a tile, then the second ones.
     middles: Vec<T>,
     /// How much nearer than their shadows two segments can seem for roundings, for each unit of their lengths.
     rounding: T,
@@ -81,33 +83,41 @@ impl<T: Real> Index<T> {
                 blocks.push(Block { first, count: PASSAGE.min(ends.end - first), radius: T::ZERO });
             }
         }
-        let width = WIDTH * length;
-        let mut middles = vec![T::ZERO; blocks.len().next_multiple_of(TILE) * width];
-        let tasks: Vec<_> = blocks.chunks_mut(TILE).zip(middles.chunks_exact_mut(TILE * width)).collect();
+        let mut middles = vec![T::ZERO; blocks.len().next_multiple_of(TILE) * WIDTH];
+        let tasks: Vec<_> = blocks.chunks_mut(TILE).zip(middles.chunks_exact_mut(TILE * WIDTH)).collect();
         parallel::for_each(tasks, poses * length * 8, |_, (blocks, middles)| {
             interrupt.check()?;
             let mut probe = Probe::new(&[]);
-            let mut squares = [T::ZERO; PASSAGE];
+            let (mut courses, mut squares) = ([T::ZERO; WIDTH * PASSAGE], [T::ZERO; PASSAGE]);
             for (place, block) in blocks.iter_mut().enumerate() {
-                let middle = block.middle();
-                let shadow = rows(&shadows, length, &(middle..middle + 1));
-                for (number, x) in shadow.iter().enumerate() {
+                for (end, course) in block.ends().zip(courses.chunks_exact_mut(WIDTH)) {
+                    write_course(rows(&shadows, length, &(end..end + 1)), course);
+                }
+                let middle = block.middle() - block.first;
+                let course = &courses[middle * WIDTH..(middle + 1) * WIDTH];
+                for (number, x) in course.iter().enumerate() {
                     middles[number * TILE + place] = *x;
                 }
-                probe.set(shadow);
+                probe.set(course);
                 let squares = &mut squares[..block.count];
-                kernels::in_sequence(rows(&shadows, length, &block.ends()), WIDTH, &probe, squares);
-                block.radius = radius(squares, squares[middle - block.first]);
+                kernels::in_sequence(&courses[..block.count * WIDTH], WIDTH, &probe, squares);
+                block.radius = radius(squares, squares[middle]);
             }
             Ok(())
         })?;
-        let rounding = T::EPSILON * T::from_f64((4 * (dims + width)) as f64);
+        let rounding = T::EPSILON * T::from_f64((4 * (dims + WIDTH * length)) as f64);
         Ok(Self { basis, shadows, blocks, middles, rounding, largest, length })
     }
 
     /// A query, with its shadow.
     pub(super) fn query(&self, values: &[T], dims: usize, excluded: Range<usize>) -> Query<T> {
-        let mut query = Query { probe: Probe::new(&[]), shadow: Probe::new(&[]), excluded, slack: T::ZERO };
+        let mut query = Query {
+            probe: Probe::new(&[]),
+            shadow: Probe::new(&[]),
+            course: [T::ZERO; WIDTH],
+            excluded,
+            slack: T::ZERO,
+        };
         self.set(&mut query, values, dims);
         query
     }
@@ -118,6 +128,7 @@ impl<T: Real> Index<T> {
         let own = shade(&self.basis, values, dims, &mut shadow) * T::from_f64(self.length as f64).sqrt();
         query.probe.set(values);
         query.shadow.set(&shadow);
+        write_course(&shadow, &mut query.course);
         query.slack = self.rounding * (self.largest + own) + T::TINY_SQUARE.sqrt();
     }
 
@@ -134,11 +145,11 @@ impl<T: Real> Index<T> {
         bests: &mut [Best<T>],
         squares: &mut Vec<T>,
     ) {
-        let (room, width) = (self.room(), WIDTH * self.length);
+        let room = self.room();
         squares.resize(room * queries.len(), T::ZERO);
-        for (tile, middles) in self.middles.chunks_exact(TILE * width).enumerate() {
+        for (tile, middles) in self.middles.chunks_exact(TILE * WIDTH).enumerate() {
             for (query, squares) in queries.iter().zip(squares.chunks_exact_mut(room)) {
-                kernels::tile(middles, query.shadow.values(), &mut squares[tile * TILE..(tile + 1) * TILE]);
+                kernels::tile(middles, &query.course, &mut squares[tile * TILE..(tile + 1) * TILE]);
             }
         }
         if room > 0 {
@@ -148,7 +159,7 @@ impl<T: Real> Index<T> {
         }
     }
 
-    /// Offers the candidates nearest to a query, given the squared distances of its shadow from those of the passages' middles.
+    /// Offers the candidates nearest to a query, given the squared distances of its course from those of the passages' middles.
     fn look(&self, segments: &Segments<'_, T>, query: &Query<T>, squares: &[T], best: &mut Best<T>) {
         if !query.probe.is_finite() {
             return;
@@ -197,7 +208,7 @@ impl<T: Real> Index<T> {
                 shadow = if square < shadow { square } else { shadow };
                 continue;
             }
-            let exact = self.square(query, segments.at(end));
+            let exact = query.square(segments.at(end));
             least = if exact < least { exact } else { least };
             best.offer(exact, end);
         }
@@ -205,28 +216,18 @@ impl<T: Real> Index<T> {
         (shadow.sqrt() / above - query.slack).min(least.sqrt() / above)
     }
 
-    /// The squared distance of a segment to a query.
-    pub(super) fn square(&self, query: &Query<T>, segment: &[T]) -> T {
-        let mut square = [T::ZERO];
-        kernels::in_sequence(segment, segment.len(), &query.probe, &mut square);
-        square[0]
-    }
-
     /// What two queries are not farther apart than.
     pub(super) fn distance(&self, query: &Query<T>, other: &[T]) -> T {
-        self.square(query, other).sqrt() * (T::ONE + self.rounding)
+        query.square(other).sqrt() * (T::ONE + self.rounding)
     }
 
-    /// The squared distance of the shadow of the middle of a passage to that of a query.
-    pub(super) fn middle_square(&self, query: &Query<T>, block: usize) -> T {
-        let middle = self.blocks[block].middle();
-        let mut square = [T::ZERO];
-        let shadow = rows(&self.shadows, self.length, &(middle..middle + 1));
-        kernels::in_sequence(shadow, WIDTH, &query.shadow, &mut square);
-        square[0]
+    /// The squared distances of the courses of the middles of a tile of passages to that of a query.
+    pub(super) fn tile(&self, query: &Query<T>, tile: usize, squares: &mut [T; TILE]) {
+        let at = tile * TILE * WIDTH;
+        kernels::tile(&self.middles[at..at + TILE * WIDTH], &query.course, squares);
     }
 
-    /// What no segment of a passage is nearer than to a query, given the squared distance of the shadow of its middle; no number
+    /// What no segment of a passage is nearer than to a query, given the squared distance of the course of its middle; no number
     /// where nothing is known.
     pub(super) fn below(&self, query: &Query<T>, block: usize, square: T) -> T {
         let above = T::ONE + self.rounding;
@@ -249,6 +250,7 @@ impl<T: Real> Index<T> {
 pub(super) struct Query<T> {
     probe: Probe<T>,
     shadow: Probe<T>,
+    course: [T; WIDTH],
     pub(super) excluded: Range<usize>,
     slack: T,
 }
@@ -257,6 +259,13 @@ impl<T: Real> Query<T> {
     /// Whether all its numbers are finite.
     pub(super) fn is_finite(&self) -> bool {
         self.probe.is_finite()
+    }
+
+    /// The squared distance of a segment.
+    pub(super) fn square(&self, segment: &[T]) -> T {
+        let mut square = [T::ZERO];
+        kernels::in_sequence(segment, segment.len(), &self.probe, &mut square);
+        square[0]
     }
 
     /// The distance of shadows from which on no segment is among the best.
@@ -269,6 +278,20 @@ impl<T: Real> Query<T> {
 /// The shadows of the poses of candidates in sequence.
 fn rows<'a, T: Real>(shadows: &'a [T], length: usize, ends: &Range<usize>) -> &'a [T] {
     &shadows[(ends.start + 1 - length) * WIDTH..ends.end * WIDTH]
+}
+
+/// Writes the course of a segment, given the shadows of its poses.
+fn write_course<T: Real>(shadows: &[T], course: &mut [T]) {
+    let share = T::from_f64((WIDTH as f64 / shadows.len() as f64).sqrt());
+    course.fill(T::ZERO);
+    for shadow in shadows.chunks_exact(WIDTH) {
+        for (sum, x) in course.iter_mut().zip(shadow) {
+            *sum += *x;
+        }
+    }
+    for sum in course {
+        *sum *= share;
+    }
 }
 
 /// Writes the shadows of poses, and says how long the longest pose is.

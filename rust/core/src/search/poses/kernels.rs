@@ -48,11 +48,6 @@ impl<T: Real> Probe<T> {
     pub fn is_finite(&self) -> bool {
         self.values.iter().all(|value| value.is_finite())
     }
-
-    /// Its numbers.
-    pub(super) fn values(&self) -> &[T] {
-        &self.values
-    }
 }
 
 /// Adds the upper half of the lanes to the lower.
