@@ -1,5 +1,6 @@
 """Pose search: the nearest segments of poses beside FAISS, flat and as a graph, and beside reading the memory once."""
 
+import itertools
 import os
 import tempfile
 import time
@@ -77,7 +78,9 @@ def measure(results: Results, repetitions: int) -> None:
 def _recorded(db: qf.MotionDatabase) -> Poses:
     """Separate the people that are searched for from the others."""
     spans = list(zip(db.clip_names, db.starts[:-1], db.starts[1:], strict=True))
-    motions = [db.features[a:b].copy() for name, a, b in spans if name.startswith(HELD_OUT) and name.endswith("at 1")]
+    motions = [
+        db.features[a:b].copy() for name, a, b in spans if name.startswith(HELD_OUT) and name.endswith("at 1")
+    ]
     kept = [db.features[a:b] for name, a, b in spans if not name.startswith(HELD_OUT)]
     starts = np.cumsum([0, *map(len, kept)])
     return Poses("recordings", np.concatenate(kept), starts, motions)
@@ -121,9 +124,7 @@ def _beside_flat(results: Results, poses: Poses, length: int, queries: int, repe
     vectors = sought.reshape(queries, -1)
     _, distances = qf.nearest_segments(poses.features, one_clip, sought, k=COUNT, successors=0)
     agreement.numbers("nearest_segments: FAISS", distances, np.sqrt(flat.search(vectors, COUNT)[0].clip(0)))
-    own = ours(
-        lambda: qf.nearest_segments(poses.features, one_clip, sought, k=COUNT, successors=0)
-    )
+    own = ours(lambda: qf.nearest_segments(poses.features, one_clip, sought, k=COUNT, successors=0))
     peers = _with_threads("FAISS IndexFlatL2, stacked poses", lambda: flat.search(vectors, COUNT))
     reading = Contender("NumPy reads the poses once", lambda: poses.features.view(np.int32).max())
     times = race([*own, *peers, *([reading] if queries == 1 else [])], repetitions)
@@ -140,7 +141,9 @@ def _beside_flat(results: Results, poses: Poses, length: int, queries: int, repe
         results.aim(what, gain, at_least=1)
     if queries == 1:
         results.aim(
-            f"nearest_segments, m = {length}: queries in a second, 1 thread", 1 / table.median(own[0].name), at_least=60
+            f"nearest_segments, m = {length}: queries in a second, 1 thread",
+            1 / table.median(own[0].name),
+            at_least=60,
         )
 
 
@@ -152,7 +155,9 @@ def _along(results: Results, poses: Poses, *, beside_faiss: bool) -> None:
     truth: list[NDArray[np.int64]] = []
     rows = []
 
-    def follow(name: str, find: Callable[[Array], Numbers], reset: Callable[[], None] = lambda: None) -> float:
+    def follow(
+        name: str, find: Callable[[Array], Numbers], reset: Callable[[], None] = lambda: None
+    ) -> float:
         seconds, shares = [], []
         for i, (begins, query) in enumerate(poses.queries(length)):
             if begins:
@@ -164,7 +169,9 @@ def _along(results: Results, poses: Poses, *, beside_faiss: bool) -> None:
                 truth.append(found)
             shares.append(len(np.intersect1d(truth[i], found)) / COUNT)
         mean, late = float(np.mean(seconds)), float(np.quantile(seconds, 0.99))
-        rows.append([name, number(mean * 1e3), number(late * 1e3), number(1 / mean), f"{np.mean(shares):.3f}"])
+        rows.append(
+            [name, number(mean * 1e3), number(late * 1e3), number(1 / mean), f"{np.mean(shares):.3f}"]
+        )
         return mean
 
     exact = qf.PoseSearch(features, starts, k=COUNT, length=length)
@@ -178,7 +185,7 @@ def _along(results: Results, poses: Poses, *, beside_faiss: bool) -> None:
         alone = qf.PoseSearch(features, starts, graph, k=COUNT, length=length, refresh=0)
         follow("PoseSearch, each frame by itself", lambda query: alone(query)[0])
         faiss.omp_set_num_threads(all_threads())
-        inside = np.concatenate([np.arange(a, b - length) for a, b in zip(starts[:-1], starts[1:], strict=True)])
+        inside = np.concatenate([np.arange(a, b - length) for a, b in itertools.pairwise(starts)])
         hnsw = faiss.IndexHNSWFlat(length * features.shape[1], 16)
         hnsw.add(_stacked(poses, length)[inside])
         faiss.omp_set_num_threads(1)
@@ -194,7 +201,11 @@ def _along(results: Results, poses: Poses, *, beside_faiss: bool) -> None:
     note = "The motions are of people who are not in the database." if poses.what == "recordings" else ""
     results.add(Figures(title, columns, rows, [note] if note else []))
     if len(features) > POSES:
-        results.aim(f"exact search from frame to frame, {len(features):,} poses: frames in a second", 1 / mean, at_least=1000)
+        results.aim(
+            f"exact search from frame to frame, {len(features):,} poses: frames in a second",
+            1 / mean,
+            at_least=1000,
+        )
 
 
 def _opening(results: Results, path: Path, searched: int) -> None:

@@ -155,7 +155,10 @@ def test_along_a_motion_without_a_graph(seed, length, dims, speed, dtype):
         # What is left out changes from frame to frame.
         result, expected = (walk.next(query, 10 * (t % 7), 300) for walk in (ours, theirs))
         agree(
-            (result[0][None], result[1][None]), (expected[0][None], expected[1][None]), features, lambda _: query
+            (result[0][None], result[1][None]),
+            (expected[0][None], expected[1][None]),
+            features,
+            lambda _, query=query: query,
         )
         assert result[2] == expected[2]
         # To the last bit what a search of this frame alone finds.

@@ -70,9 +70,7 @@ class SegmentWalk:
         """Forget the frames before."""
         self._since = math.inf
 
-    def _walk(
-        self, graph: NDArray[np.int32], query: Reals, first: int, last: int
-    ) -> tuple[Indices, Reals]:
+    def _walk(self, graph: NDArray[np.int32], query: Reals, first: int, last: int) -> tuple[Indices, Reals]:
         """Find the nearest of the nearest before, their successors, and the neighbours of both."""
         near = [end for before in self._before for end in (before, before + 1) if end < len(graph)]
         ends = np.intersect1d(np.concatenate([near, graph[near].ravel()]).astype(np.intp), self._ends)
