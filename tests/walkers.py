@@ -14,9 +14,21 @@ FPS = 60.0
 @functools.cache
 def database(seeds=(1, 2, 3), seconds=3.0):
     """Return a database of some walks."""
+    return walks(seeds, seconds)
+
+
+def walks(seeds=(1, 2, 3), seconds=3.0):
+    """Make a database of some walks."""
     return qf.MotionDatabase.from_motions(
         [walk(seconds=seconds, fps=FPS, seed=seed) for seed in seeds], fps=FPS
     )
+
+
+def with_graph(degree):
+    """Return the same database with neighbours of its poses."""
+    database = walks()
+    database.build_graph(degree=degree)
+    return database
 
 
 @functools.cache

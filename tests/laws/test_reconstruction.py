@@ -164,3 +164,26 @@ def test_a_past_settles_the_start():
         initial=walkers.part(walk, slice(0, 3)),
     )
     assert qf.metrics.angle_error(rest.rotations[:1], result.rotations[:1]) < 3.0
+
+
+def test_a_graph_in_which_all_know_all_changes_nothing():
+    positions = walkers.seen(walkers.walker(20))
+    options = {"control_points": walkers.JOINTS, "neighbors": 16}
+    database = walkers.walks()
+    everywhere = qf.MotionReconstructor(database, **options).reconstruct(positions, fps=walkers.FPS)
+    every = np.arange(len(database), dtype=np.int32)
+    database.graph = np.tile(every, (len(database), 1))
+    along = qf.MotionReconstructor(database, **options).reconstruct(positions, fps=walkers.FPS)
+    np.testing.assert_array_equal(along.rotations, everywhere.rotations)
+    np.testing.assert_array_equal(along.translation, everywhere.translation)
+
+
+def test_a_stream_goes_along_the_graph_as_the_whole_does():
+    positions = walkers.seen(walkers.walker(12))
+    reconstructor = qf.MotionReconstructor(
+        walkers.with_graph(degree=2), control_points=walkers.JOINTS, neighbors=8
+    )
+    whole = reconstructor.reconstruct(positions, fps=walkers.FPS)
+    stream = reconstructor.stream()
+    poses = np.array([stream.push(frame).rotations for frame in positions])
+    assert clips.angles(whole.rotations, poses).max() <= tolerances.SOLUTION

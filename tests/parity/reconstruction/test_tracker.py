@@ -8,12 +8,22 @@ import tolerances
 import walkers
 
 
-def both(positions, *, fps=walkers.FPS, initial=None, orientations=None, confidence=None, **options):
+def both(
+    positions,
+    *,
+    database=None,
+    fps=walkers.FPS,
+    initial=None,
+    orientations=None,
+    confidence=None,
+    **options,
+):
+    database = walkers.database() if database is None else database
     options = {"control_points": walkers.JOINTS, "neighbors": 24, **options}
     results = []
     for backend in ("rust", "numpy"):
         with qf.use_backend(backend):
-            reconstructor = qf.MotionReconstructor(walkers.database(), **options)
+            reconstructor = qf.MotionReconstructor(database, **options)
             motion = reconstructor.reconstruct(
                 positions, fps=fps, initial=initial, orientations=orientations, confidence=confidence
             )
@@ -67,3 +77,21 @@ def test_another_frame_rate():
 
 def test_more_neighbors_than_poses():
     both(walkers.seen(walkers.walker(3)), neighbors=1024)
+
+
+@pytest.mark.parametrize("scale", [None, np.inf])
+def test_along_a_graph(scale):
+    # Few neighbours, so that it shows whether both look at the same candidates.
+    positions = walkers.seen(walkers.walker(40)).copy()
+    positions[15:32] = np.nan
+    along = both(positions, database=walkers.with_graph(degree=2), neighbors=8, control_scale=scale)
+    everywhere = qf.MotionReconstructor(
+        walkers.database(), control_points=walkers.JOINTS, neighbors=8, control_scale=scale
+    ).reconstruct(positions, fps=walkers.FPS)
+    assert not np.array_equal(along.rotations, everywhere.rotations)
+
+
+def test_along_a_graph_of_nobody():
+    database = walkers.with_graph(degree=1)
+    database.graph = np.full((len(database), 1), -1, np.int32)
+    both(walkers.seen(walkers.walker(30)), database=database, neighbors=4)

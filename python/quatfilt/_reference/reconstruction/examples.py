@@ -31,6 +31,8 @@ class Poses(NamedTuple):
         From which they are measured.
     joint_weights : array (joints,)
         How much joints count in them.
+    graph : array (poses, degree) of int32 or None
+        Neighbours of the poses, −1 where there are fewer.
     """
 
     rotations: NDArray[np.float32]
@@ -41,6 +43,7 @@ class Poses(NamedTuple):
     features: NDArray[np.float32]
     mean_rotations: Floats
     joint_weights: Floats
+    graph: NDArray[np.int32] | None
 
     def feature(self, pose: Floats) -> Floats:
         """Return a pose as a vector."""
@@ -176,22 +179,20 @@ def follow(state: State, rotations: Floats, position: Floats, up: int) -> State:
 
 def nearest(
     poses: Poses,
+    candidates: NDArray[np.intp],
     state: State,
     sight: Sight,
     up: int,
-    before: int,
-    stride: int,
     count: int,
     spacing: int,
     scale: float,
-) -> NDArray[np.intp]:
-    """Find the examples' next poses, nearest first: the poses before are like the last ones, and the control points moved alike.
+) -> tuple[NDArray[np.intp], Floats]:
+    """Find the nearest examples' next poses among some, nearest first, and their squared distances: the poses before are like the last ones, and the control points moved alike.
 
     The squared distance of an example is the mean of the squared distances of its `m` poses from the last ones, in
     radians, and that of its control points (`fit`) over `scale` squared. With an infinite scale it is the paper's. Of the
     examples within less than `spacing` frames of each other in a clip only the nearest is taken.
     """
-    candidates = poses.candidates(before, stride)
     order = len(state.recent)
     squares = np.zeros(len(candidates))
     for lag, pose in enumerate(state.recent[::-1], 1):
@@ -202,12 +203,13 @@ def nearest(
     found: list[int] = []
     free = np.ones(len(poses.heading), bool)
     clip = np.searchsorted(poses.starts, np.arange(len(free)), side="right")
-    for pose in candidates[np.argsort(squares, kind="stable")]:
+    for number in np.argsort(squares, kind="stable"):
+        pose = candidates[number]
         if len(found) < count and free[pose]:
-            found.append(int(pose))
+            found.append(int(number))
             near = slice(max(0, int(pose) - spacing + 1), int(pose) + spacing)
             free[near] &= clip[near] != clip[pose]
-    return np.array(found, np.intp)
+    return candidates[found], squares[found]
 
 
 def ways(poses: Poses, examples: NDArray[np.intp], up: int) -> Floats:

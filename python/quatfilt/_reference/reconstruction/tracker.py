@@ -1,5 +1,7 @@
 """A motion that follows control points, frame by frame."""
 
+import math
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -44,6 +46,10 @@ class Options(NamedTuple):
         Standard deviations of what models do not see: of a joint's coordinate in radians, and of the root's way.
     steps : int
         The most steps of the solver per frame.
+    refresh : int
+        With a graph: frames after which all examples are looked at again.
+    ratio : float
+        With a graph: how many times as far as at best since then the last of the examples may be before all are looked at.
     model : tuple of (str, str, str, float, float, float)
         Model, target, deviation, bandwidth, ridge and share, as in `predict_pose`.
     """
@@ -57,7 +63,66 @@ class Options(NamedTuple):
     patience: int
     floor: Floats
     steps: int
+    refresh: int
+    ratio: float
     model: tuple[str, str, str, float, float, float]
+
+
+@dataclass
+class Search:
+    """The examples of one frame after the other.
+
+    Without a graph, all poses of the database that may be examples are looked at in each frame. With one, the candidates are
+    the examples of the frame before, the poses after them, and the neighbours of both; since not every pose may be an
+    example, those fewer than `stride` poses away from them. All are looked at in the first frame, after `refresh` frames, where
+    there are fewer examples than are sought, and where the last of them is more than `ratio` times as far as it was at best
+    since all were looked at (Chai and Hodgins 2005).
+    """
+
+    poses: Poses
+    how: Options
+    up: int
+    before: NDArray[np.intp] = field(default_factory=lambda: np.zeros(0, np.intp))
+    since: float = math.inf
+    least: float = 0.0
+
+    def reset(self) -> None:
+        """Forget the frames before."""
+        self.since = math.inf
+
+    def next(self, state: State, sight: Sight) -> NDArray[np.intp]:
+        """Find the examples of the next frame, nearest first."""
+        how = self.how
+        every = self.poses.candidates(history(how), how.stride)
+        graph = self.poses.graph
+        trusted = False
+        if graph is not None and self.since < how.refresh:
+            found, squares = self._among(self._around(every, graph), state, sight)
+            trusted = len(found) == how.neighbors and (
+                math.isinf(how.ratio) or math.sqrt(squares[-1]) <= how.ratio * self.least
+            )
+        if not trusted:
+            found, squares = self._among(every, state, sight)
+        last = math.sqrt(squares[-1])
+        self.least = min(self.least, last) if trusted else last
+        self.since = self.since + 1 if trusted else 0
+        self.before = found
+        return found
+
+    def _among(
+        self, candidates: NDArray[np.intp], state: State, sight: Sight
+    ) -> tuple[NDArray[np.intp], Floats]:
+        how = self.how
+        return nearest(self.poses, candidates, state, sight, self.up, how.neighbors, how.spacing, how.scale)
+
+    def _around(self, every: NDArray[np.intp], graph: NDArray[np.int32]) -> NDArray[np.intp]:
+        poses = np.concatenate([self.before, self.before + 1])
+        poses = poses[poses < len(graph)]
+        hints = np.concatenate([self.before, self.before + 1, graph[poses].ravel()])
+        near = np.zeros(len(graph) + self.how.stride, bool)
+        for hint in hints[hints >= 0]:
+            near[max(0, hint - self.how.stride + 1) : hint + self.how.stride] = True
+        return every[near[every]]
 
 
 def track(
@@ -76,7 +141,7 @@ def track(
 ) -> tuple[Floats, Floats, Floats]:
     """Reconstruct a motion from trajectories of some joints.
 
-    In each frame, the examples nearest to the last poses are found (`nearest`), a local model of how they went on predicts
+    In each frame, the examples nearest to the last poses are found (`Search`), a local model of how they went on predicts
     the pose, and the most probable pose is found, from the prediction or from the nearest example, whichever has the lower
     energy.
 
@@ -109,6 +174,7 @@ def track(
     how = Options(*options, model)  # type: ignore[call-arg, arg-type]
     state = None if initial is None else State(*initial)
     rotations, translation, energies = [], [], []
+    search = Search(database, how, up)
     blind = 0
     weights = np.where(np.isfinite(position_deviations), 1 / position_deviations**2, 0)
     for frame in range(len(positions)):
@@ -123,8 +189,9 @@ def track(
         missing = not np.isfinite(seen.position_deviations).any()
         if state is None or (blind >= how.patience and not missing):
             state = begin(database, sight, up, how.order, history(how), how.stride)
+            search.reset()
         blind = blind + 1 if missing else 0
-        q, place, parts = next_pose(body, database, how, state, sight, seen)
+        q, place, parts = next_pose(body, search, state, sight, seen)
         state = follow(state, q, place, up)
         rotations.append(q)
         translation.append(place)
@@ -143,12 +210,11 @@ def history(how: Options) -> int:
 
 
 def next_pose(
-    body: Body, poses: Poses, how: Options, state: State, sight: Sight, seen: Targets
+    body: Body, search: Search, state: State, sight: Sight, seen: Targets
 ) -> tuple[Floats, Floats, tuple[float, float]]:
     """Find the most probable pose of the next frame, and the two parts of its energy."""
-    found = nearest(
-        poses, state, sight, body.up, history(how), how.stride, how.neighbors, how.spacing, how.scale
-    )
+    poses, how = search.poses, search.how
+    found = search.next(state, sight)
     segments = poses.rotations[found[:, None] + np.arange(-how.order, 1)].astype(np.float64)
     roots = ways(poses, found, body.up)
     chart, mean, deviation, axes = predict_pose(

@@ -79,7 +79,7 @@ class Examples:
         return extent(self.trails[::step], self.database.up)
 
     @property
-    def arrays(self) -> tuple[NDArray[Any], ...]:
+    def arrays(self) -> tuple[NDArray[Any] | None, ...]:
         """What the kernels take."""
         db = self.database
         return (
@@ -91,6 +91,7 @@ class Examples:
             db.features,
             db.mean_rotations,
             db.joint_weights,
+            db.graph,
         )
 
 

@@ -47,6 +47,12 @@ MOST_STEPS = 12
 MOST_NEIGHBORS = 1024
 """The cost grows with the cube."""
 
+REFRESH = 4.0
+"""Seconds after which all examples are looked at again, where there is a graph: of a million poses that takes 50 frames' time."""
+
+FARTHEST = 1.5
+"""How many times as far as at best since then the last of the examples may be before all are looked at."""
+
 SHARE = 0.95
 """Of the variance that principal components make up."""
 
@@ -126,6 +132,8 @@ class Settings:
             max(1, round(PATIENCE * fps)),
             floor,
             MOST_STEPS,
+            round(REFRESH * fps),
+            FARTHEST,
         )
         return options, (self.model, "pose", "predictive", 0.0, self.ridge, SHARE)
 

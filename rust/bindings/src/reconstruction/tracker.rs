@@ -4,19 +4,22 @@ use crate::array::{BUG, elements, input, numbers, run, run_interruptible, to_pyt
 use crate::reconstruction::local_models;
 use crate::reconstruction::solver::{array, body};
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use quatfilt_core::Error;
 use quatfilt_core::parallel::Interrupt;
 use quatfilt_core::reconstruction::kinematics::{Body, WAY};
 use quatfilt_core::reconstruction::solver::Targets;
 use quatfilt_core::reconstruction::tracker::{Options, Poses, State, Tracker};
+use quatfilt_core::search::poses::graph::Graph;
+use quatfilt_core::search::poses::walk::Trust;
 use std::sync::{Mutex, TryLockError};
 
 /// Nanoseconds that a frame takes beside the search, by which it is decided whether to listen for Ctrl-C.
 const FRAME: usize = 500_000;
 
-/// The arrays of a database: rotations, heading, translation, trails, starts, features, mean rotations, joint weights.
+/// The arrays of a database: rotations, heading, translation, trails, starts, features, mean rotations, joint weights, and the graph or
+/// none.
 type Arrays<'py> = (
     Bound<'py, PyAny>,
     Bound<'py, PyAny>,
@@ -26,10 +29,11 @@ type Arrays<'py> = (
     Bound<'py, PyAny>,
     Bound<'py, PyAny>,
     Bound<'py, PyAny>,
+    Option<Bound<'py, PyAny>>,
 );
 
-/// Order, neighbors, stride, spacing, window, scale, patience, floor, steps.
-type How = (usize, usize, usize, usize, Vec<usize>, f64, usize, [f64; 1 + WAY], usize);
+/// Order, neighbors, stride, spacing, window, scale, patience, floor, steps, refresh and ratio.
+type How = (usize, usize, usize, usize, Vec<usize>, f64, usize, [f64; 1 + WAY], usize, usize, f64);
 
 /// Model, target, deviation, bandwidth, ridge, share.
 type Model = (String, String, String, f64, f64, f64);
@@ -45,11 +49,12 @@ struct Borrowed<'py> {
     starts: PyReadonlyArrayDyn<'py, i64>,
     mean_rotations: PyReadonlyArrayDyn<'py, f64>,
     joint_weights: PyReadonlyArrayDyn<'py, f64>,
+    graph: Option<PyReadonlyArrayDyn<'py, i32>>,
 }
 
 impl<'py> Borrowed<'py> {
     fn new(arrays: &Arrays<'py>) -> PyResult<Self> {
-        let (rotations, heading, translation, trails, starts, features, mean_rotations, joint_weights) =
+        let (rotations, heading, translation, trails, starts, features, mean_rotations, joint_weights, graph) =
             arrays;
         Ok(Self {
             small: [
@@ -62,6 +67,7 @@ impl<'py> Borrowed<'py> {
             starts: input("starts", starts)?,
             mean_rotations: input("mean_rotations", mean_rotations)?,
             joint_weights: input("joint_weights", joint_weights)?,
+            graph: graph.as_ref().map(|graph| input("graph", graph)).transpose()?,
         })
     }
 
@@ -76,16 +82,37 @@ impl<'py> Borrowed<'py> {
             features: elements("features", features)?,
             mean_rotations: elements("mean_rotations", &self.mean_rotations)?,
             joint_weights: elements("joint_weights", &self.joint_weights)?,
+            graph: self.graph.as_ref().map(graph).transpose()?,
         })
     }
 }
 
+/// The neighbours `(poses, degree)` of all poses.
+fn graph<'a>(array: &'a PyReadonlyArrayDyn<'_, i32>) -> PyResult<Graph<'a>> {
+    let &[poses, degree] = array.shape() else {
+        return Err(PyValueError::new_err(format!("graph: expected two axes, got {}", array.shape().len())));
+    };
+    Graph::new(elements("graph", array)?, poses, degree).map_err(to_python)
+}
+
 /// A tracker of a body, with its options.
 fn tracker(body: Body, how: How, model: &Model, initial: Option<Initial<'_>>) -> PyResult<Tracker> {
-    let (order, neighbors, stride, spacing, window, scale, patience, floor, steps) = how;
+    let (order, neighbors, stride, spacing, window, scale, patience, floor, steps, frames, ratio) = how;
     let (name, target, deviation, bandwidth, ridge, share) = model;
     let model = local_models::options(name, target, deviation, *bandwidth, *ridge, *share)?;
-    let options = Options { order, neighbors, stride, spacing, window, scale, patience, model, floor, steps };
+    let options = Options {
+        order,
+        neighbors,
+        stride,
+        spacing,
+        window,
+        scale,
+        patience,
+        model,
+        floor,
+        steps,
+        trust: Trust { frames, ratio },
+    };
     let state = initial
         .map(|(recent, place, heading)| {
             Ok::<_, PyErr>(State { recent: numbers("initial", &recent)?, place, heading })
@@ -183,15 +210,16 @@ pub(crate) fn track_stream<'py>(
     initial: Option<Initial<'py>>,
 ) -> PyResult<MotionTracker> {
     let tracker = tracker(body(parents, offsets, points, up)?, options, &model, initial)?;
-    let (a, b, c, d, e, f, g, h) = poses;
+    let (a, b, c, d, e, f, g, h, graph) = poses;
     let poses = [a, b, c, d, e, f, g, h].map(Bound::unbind);
-    Ok(MotionTracker { poses, tracker: Mutex::new(tracker) })
+    Ok(MotionTracker { poses, graph: graph.map(Bound::unbind), tracker: Mutex::new(tracker) })
 }
 
 /// A motion that follows control points as they come.
 #[pyclass(frozen, module = "quatfilt._core")]
 pub(crate) struct MotionTracker {
     poses: [Py<PyAny>; 8],
+    graph: Option<Py<PyAny>>,
     tracker: Mutex<Tracker>,
 }
 
@@ -209,7 +237,8 @@ impl MotionTracker {
         orientation_deviations: &Bound<'_, PyAny>,
     ) -> PyResult<Tracked> {
         let [a, b, c, d, e, f, g, h] = self.poses.each_ref().map(|array| array.bind(py).clone());
-        let borrowed = Borrowed::new(&(a, b, c, d, e, f, g, h))?;
+        let graph = self.graph.as_ref().map(|array| array.bind(py).clone());
+        let borrowed = Borrowed::new(&(a, b, c, d, e, f, g, h, graph))?;
         let poses = borrowed.poses()?;
         let positions = numbers("positions", positions)?;
         let position_deviations = numbers("position_deviations", position_deviations)?;

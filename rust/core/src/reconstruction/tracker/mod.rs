@@ -1,8 +1,12 @@
 //! A motion that follows control points, frame by frame.
 
+mod lattice;
 mod poses;
+mod recent;
 mod search;
 mod sight;
+mod trails;
+mod walk;
 mod within;
 
 pub use poses::Poses;
@@ -15,9 +19,14 @@ use crate::Error;
 use crate::error::check_length;
 use crate::parallel::Interrupt;
 use crate::rotations::quaternion::{between, log_short, of_row, product};
-use search::Query;
+use crate::search::poses::walk::Trust;
+use lattice::Lattice;
+use recent::Recent;
+use search::{Example, Query};
 use sight::Sight;
 use std::collections::VecDeque;
+use trails::Trails;
+use walk::Walk;
 use within::within;
 
 /// How a motion is reconstructed.
@@ -43,6 +52,8 @@ pub struct Options {
     pub floor: [f64; 1 + WAY],
     /// The most steps of the solver per frame.
     pub steps: usize,
+    /// With a graph: when all examples are looked at nevertheless.
+    pub trust: Trust,
 }
 
 /// What is known of the frames before.
@@ -78,7 +89,11 @@ pub struct Tracker {
     /// Frames since a control point was seen.
     blind: usize,
     sight: Sight,
-    features: Vec<Vec<f64>>,
+    /// What does not depend on the frame, once it is known.
+    candidates: Option<(Lattice, Trails)>,
+    walk: Walk,
+    /// A bit for each pose of the database.
+    bits: Vec<u64>,
 }
 
 impl Tracker {
@@ -95,12 +110,14 @@ impl Tracker {
         }
         Ok(Self {
             solver: Solver::new(body),
-            features: vec![Vec::new(); options.order],
             options,
             state,
             past: VecDeque::new(),
             blind: 0,
             sight: Sight::default(),
+            candidates: None,
+            walk: Walk::default(),
+            bits: Vec::new(),
         })
     }
 
@@ -111,8 +128,8 @@ impl Tracker {
 
     /// Takes in the control points of the next frame, and returns its pose.
     ///
-    /// In each frame, the examples nearest to the last poses are found, a local model of how they went on predicts the pose,
-    /// and the most probable pose is found from the prediction or from the nearest example, whichever has the lower energy.
+    /// The poses must be the same in each frame. In each, the examples nearest to the last poses are found, a local model of how
+    /// they went on predicts the pose, and the most probable pose is found from the prediction or from the nearest example, whichever has the lower energy.
     ///
     /// # Errors
     /// [`Error::Length`] and [`Error::Parameter`] if the database or the targets are not of the body, or the database has no
@@ -131,20 +148,25 @@ impl Tracker {
             .collect();
         let missing = weights.iter().all(|&weight| weight == 0.0);
         self.sight.clear();
-        for &lag in &self.options.window {
+        for (place, &lag) in self.options.window.iter().enumerate() {
             if lag == 0 {
-                self.sight.add(0, seen.positions, &weights, up);
+                self.sight.add((place, 0), seen.positions, &weights, up);
             } else if let Some((positions, weights)) = self.past.get(lag - 1) {
-                self.sight.add(lag, positions, weights, up);
+                self.sight.add((place, lag), positions, weights, up);
             }
         }
         self.sight.finish();
-        let lost = self.blind >= self.options.patience && !missing;
-        let state = match &self.state {
-            Some(state) if !lost => state.clone(),
-            _ => self.begin(poses, interrupt)?,
+        let candidates = if let Some(candidates) = self.candidates.take() {
+            candidates
+        } else {
+            let lattice = Lattice::new(poses, self.before(), self.options.stride.max(1))?;
+            let trails = Trails::new(poses, &lattice, &self.options.window, points, up);
+            (lattice, trails)
         };
-        let pose = self.next(poses, &state, seen, interrupt)?;
+        let result = self.reach(poses, &candidates, seen, missing, interrupt);
+        self.candidates = Some(candidates);
+        let (pose, state, walk) = result?;
+        self.walk = walk;
         self.state = Some(follow(state, &pose, up));
         self.blind = if missing { self.blind + 1 } else { 0 };
         self.past.push_front((seen.positions.to_vec(), weights));
@@ -152,11 +174,30 @@ impl Tracker {
         Ok(pose)
     }
 
+    /// The pose of the next frame, the state that it was found from, and the walk that goes on from it.
+    fn reach(
+        &mut self,
+        poses: &Poses<'_>,
+        candidates: &(Lattice, Trails),
+        seen: &Targets<'_>,
+        missing: bool,
+        interrupt: &Interrupt,
+    ) -> Result<(Pose, State, Walk), Error> {
+        let lost = self.blind >= self.options.patience && !missing;
+        let (state, walk) = match &self.state {
+            Some(state) if !lost => (state.clone(), self.walk.clone()),
+            _ => (self.begin(&self.query(poses, candidates), interrupt)?, Walk::default()),
+        };
+        let (found, walk) = self.examples(poses, candidates, &state, &walk, interrupt)?;
+        let pose = self.next(poses, &found, &state, seen, interrupt)?;
+        Ok((pose, state, walk))
+    }
+
     /// What came before, from the pose that fits the control points best, where it fits best.
-    fn begin(&self, poses: &Poses<'_>, interrupt: &Interrupt) -> Result<State, Error> {
+    fn begin(&self, query: &Query<'_>, interrupt: &Interrupt) -> Result<State, Error> {
         let up = self.solver.body().up;
         let [first, second] = HORIZONTAL[up];
-        let query = self.query(poses, &[]);
+        let poses = &query.poses;
         let Some((best, fit)) = query.best_fit(interrupt)? else {
             return Err(Error::Parameter { name: "poses", expected: "a clip longer than the window" });
         };
@@ -175,39 +216,62 @@ impl Tracker {
         })
     }
 
-    fn query<'a>(&'a self, poses: &Poses<'a>, features: &'a [Vec<f64>]) -> Query<'a> {
+    fn query<'a>(&'a self, poses: &Poses<'a>, candidates: &'a (Lattice, Trails)) -> Query<'a> {
         Query {
             poses: *poses,
-            features,
+            lattice: &candidates.0,
+            trails: &candidates.1,
             sight: &self.sight,
-            points: self.solver.body().points(),
             up: self.solver.body().up,
-            before: self.before(),
-            stride: self.options.stride.max(1),
             scale: self.options.scale,
+            count: self.options.neighbors,
+            spacing: self.options.spacing,
         }
+    }
+
+    /// The examples of a frame, along the graph if there is one and it leads near enough.
+    fn examples(
+        &mut self,
+        poses: &Poses<'_>,
+        candidates: &(Lattice, Trails),
+        state: &State,
+        walk: &Walk,
+        interrupt: &Interrupt,
+    ) -> Result<(Vec<Example>, Walk), Error> {
+        let width = 4 * self.solver.body().joints();
+        let mut features = Vec::with_capacity(state.recent.len());
+        for pose in state.recent.chunks_exact(width) {
+            poses.feature(pose, &mut features);
+        }
+        let recent = Recent::new(features, self.options.order);
+        let trust = self.options.trust;
+        if let Some(graph) = poses.graph.filter(|_| walk.goes_on(trust)) {
+            let around = walk.around(&candidates.0, graph, &mut self.bits);
+            let found = self.query(poses, candidates).among(&recent, &around);
+            if walk.trusts(&found, self.options.neighbors, trust) {
+                let walk = walk.follow(&found, false);
+                return Ok((found, walk));
+            }
+        }
+        let near = walk.near(&candidates.0);
+        let found = self.query(poses, candidates).among_all(&recent, &near, interrupt)?;
+        let walk = walk.follow(&found, true);
+        Ok((found, walk))
     }
 
     fn next(
         &mut self,
         poses: &Poses<'_>,
+        found: &[Example],
         state: &State,
         seen: &Targets<'_>,
         interrupt: &Interrupt,
     ) -> Result<Pose, Error> {
         let (joints, up) = (self.solver.body().joints(), self.solver.body().up);
         let order = self.options.order;
-        let mut features = std::mem::take(&mut self.features);
-        for (feature, pose) in features.iter_mut().zip(state.recent.chunks_exact(4 * joints).rev()) {
-            poses.feature(pose, feature);
-        }
-        let found =
-            self.query(poses, &features).nearest(self.options.neighbors, self.options.spacing, interrupt);
-        self.features = features;
-        let found = found?;
         let mut segments = Vec::with_capacity(found.len() * (order + 1) * joints * 4);
         let mut root_steps = Vec::with_capacity(found.len() * WAY);
-        for &example in &found {
+        for example in found.iter().map(|found| found.pose) {
             segments.extend(poses.segment(example - order..example + 1).iter().copied().map(f64::from));
             root_steps.extend(poses.way(example, up));
         }

@@ -5,6 +5,7 @@ use crate::error::check_length;
 use crate::reconstruction::frame::HORIZONTAL;
 use crate::reconstruction::kinematics::WAY;
 use crate::rotations::quaternion::{between, log_short, of_row};
+use crate::search::poses::graph::Graph;
 
 /// Poses of many clips, and where they would have the control points.
 #[derive(Debug, Clone, Copy)]
@@ -25,6 +26,8 @@ pub struct Poses<'a> {
     pub mean_rotations: &'a [f64],
     /// How much joints count in them, `(joints)`.
     pub joint_weights: &'a [f64],
+    /// Neighbours of the poses, along which examples are looked for; `None`: all are looked at.
+    pub graph: Option<Graph<'a>>,
 }
 
 impl Poses<'_> {
@@ -62,9 +65,16 @@ impl Poses<'_> {
         })
     }
 
-    /// A pose as a vector.
+    /// Whether a clip ends between two poses.
+    pub(super) fn border(&self, first: usize, second: usize) -> bool {
+        let before = |pose: usize| {
+            self.starts.partition_point(|&start| usize::try_from(start).is_ok_and(|start| start <= pose))
+        };
+        before(first) != before(second)
+    }
+
+    /// Puts a pose as a vector behind others.
     pub(super) fn feature(&self, pose: &[f64], out: &mut Vec<f64>) {
-        out.clear();
         let joints = pose.chunks_exact(4).zip(self.mean_rotations.chunks_exact(4)).zip(self.joint_weights);
         for ((q, mean), &weight) in joints {
             let vector = log_short(between(of_row(mean), of_row(q)));

@@ -1,158 +1,219 @@
-//! The examples nearest to the last poses and the last control points, among all.
+//! The examples nearest to the last poses and the last control points, exactly.
+//!
+//! The distance of an example has two parts. That of the control points is computed first, for all candidates side by side; what
+//! it alone puts beyond the nearest is passed over. That of the poses is computed in single precision, with bounds on its error,
+//! and again in double precision for those that may be among the nearest.
 
+use super::lattice::Lattice;
 use super::poses::Poses;
+use super::recent::Recent;
 use super::sight::{Fit, Sight};
+use super::trails::{LANES as SIDE_BY_SIDE, Trails};
 use crate::Error;
 use crate::parallel::{self, Interrupt};
-use crate::simd::multiversion;
+use crate::search::poses::squares_of;
+use std::ops::Range;
 
 /// Candidates per task.
-const TASK: usize = 8192;
+const TASK: usize = 2048;
 
-/// Sums that run side by side.
-const LANES: usize = 8;
+/// A candidate that may be among the nearest.
+#[derive(Debug, Clone, Copy)]
+struct Measured {
+    least: f64,
+    greatest: f64,
+    seen: f64,
+    pose: u32,
+}
 
-multiversion! {
-    /// Adds the squared distance of every `stride`-th row of `features` from `query`.
-    fn add_squares(features: &[f32], stride: usize, query: &[f64], out: &mut [f64]) {
-        let (wide, rest) = query.as_chunks::<LANES>();
-        for (row, out) in features.chunks_exact(query.len().max(1)).step_by(stride).zip(out) {
-            let mut sums = [0.0; LANES];
-            let (row_wide, row_rest) = row.as_chunks::<LANES>();
-            for (a, b) in row_wide.iter().zip(wide) {
-                for i in 0..LANES {
-                    let difference = f64::from(a[i]) - b[i];
-                    sums[i] += difference * difference;
-                }
-            }
-            for (i, (a, b)) in row_rest.iter().zip(rest).enumerate() {
-                let difference = f64::from(*a) - b;
-                sums[i] += difference * difference;
-            }
-            *out += ((sums[0] + sums[1]) + (sums[2] + sums[3])) + ((sums[4] + sums[5]) + (sums[6] + sums[7]));
-        }
-    }
+/// An example, and its squared distance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Example {
+    pub(super) square: f64,
+    pub(super) pose: usize,
 }
 
 /// What examples are compared with.
 pub(super) struct Query<'a> {
     pub(super) poses: Poses<'a>,
-    /// The last poses as vectors, the newest first.
-    pub(super) features: &'a [Vec<f64>],
+    pub(super) lattice: &'a Lattice,
+    pub(super) trails: &'a Trails,
     pub(super) sight: &'a Sight,
-    pub(super) points: usize,
     pub(super) up: usize,
-    /// How many poses of its clip an example has before it.
-    pub(super) before: usize,
-    /// Every which pose of a clip may be an example.
-    pub(super) stride: usize,
     /// Distance of control points that counts as much as a radian between poses.
     pub(super) scale: f64,
+    /// How many examples are sought.
+    pub(super) count: usize,
+    /// So many frames apart are examples of one clip, at least.
+    pub(super) spacing: usize,
 }
 
 impl Query<'_> {
-    /// Squared distances of every `stride`-th pose of `range`, and the poses.
-    fn squares(&self, range: std::ops::Range<usize>) -> Vec<(f64, usize)> {
-        let mut squares = vec![0.0; range.len().div_ceil(self.stride)];
-        let width = 3 * self.poses.joints();
-        for (lag, feature) in self.features.iter().enumerate() {
-            let rows = (range.start - lag - 1) * width..(range.end - lag - 1) * width;
-            add_squares(&self.poses.features[rows], self.stride, feature, &mut squares);
-        }
-        let order = self.features.len() as f64;
-        let share = if self.scale.is_finite() { 1.0 / (self.scale * self.scale) } else { 0.0 };
-        let distance = |(square, pose): (f64, usize)| {
-            let seen = if share > 0.0 {
-                share * self.sight.fit(&self.poses, self.points, pose, self.up).distance
-            } else {
-                0.0
-            };
-            (square / order + seen, pose)
-        };
-        squares.into_iter().zip(range.step_by(self.stride)).map(distance).collect()
-    }
-
-    /// The `count` nearest examples' next poses, nearest first; the first of those equally near. Of those within less than
-    /// `spacing` frames of each other in a clip only the nearest is taken.
-    pub(super) fn nearest(
+    /// The nearest examples' next poses, nearest first; the first of those equally near. Of those within less than `spacing`
+    /// frames of each other in a clip only the nearest is taken.
+    ///
+    /// `near` are poses that are probably among the nearest: the nearer they are, the more is passed over.
+    pub(super) fn among_all(
         &self,
-        count: usize,
-        spacing: usize,
+        recent: &Recent,
+        near: &[u32],
         interrupt: &Interrupt,
-    ) -> Result<Vec<usize>, Error> {
-        // Each that is taken keeps at most so many from being taken.
-        let beside = spacing.saturating_sub(1) / self.stride;
-        let enough = count.saturating_mul(2 * beside + 1);
-        let work = self.poses.count() / self.stride * (self.poses.joints() * self.features.len() + 20);
-        let parts = parallel::map(self.tasks(), work, |_, range| {
+    ) -> Result<Vec<Example>, Error> {
+        let all = self.lattice.poses();
+        let share = self.share();
+        let mut seen = vec![0.0; all.len()];
+        if share > 0.0 {
+            let tasks: Vec<&mut [f64]> = seen.chunks_mut(TASK).collect();
+            let work = all.len() * (self.sight.marks() * 2 + 4);
+            parallel::for_each(tasks, work, |task, out| {
+                interrupt.check()?;
+                self.sight.distances(self.trails.planes(task * TASK..task * TASK + out.len()), out);
+                for distance in out {
+                    *distance *= share;
+                }
+                Ok(())
+            })?;
+        }
+        let slots = self.probable(near, &seen);
+        let first: Vec<u32> = slots.iter().map(|&slot| all[slot]).collect();
+        let seen_first: Vec<f64> = slots.iter().map(|&slot| seen[slot]).collect();
+        let far = self.limit(&mut self.measured(recent, &first, &seen_first));
+        let tasks: Vec<Range<usize>> =
+            (0..all.len()).step_by(TASK).map(|start| start..(start + TASK).min(all.len())).collect();
+        let work = all.len() * recent.numbers() / 16;
+        let parts = parallel::map(tasks, work, |_, range| {
             interrupt.check()?;
-            let mut part = self.squares(range);
-            keep_least(&mut part, enough);
+            let (mut left, mut left_seen) =
+                (Vec::with_capacity(range.len()), Vec::with_capacity(range.len()));
+            for slot in range {
+                // Not the other way round: what is no number is not passed over.
+                if seen[slot] > far {
+                    continue;
+                }
+                left.push(all[slot]);
+                left_seen.push(seen[slot]);
+            }
+            let mut part = self.measured(recent, &left, &left_seen);
+            self.limit(&mut part);
             Ok(part)
         })?;
-        let mut all: Vec<(f64, usize)> = parts.into_iter().flatten().collect();
-        keep_least(&mut all, enough);
-        all.sort_unstable_by(order);
-        let mut found: Vec<usize> = Vec::with_capacity(count);
-        for (_, pose) in all {
-            if found.len() == count {
-                break;
-            }
-            let apart = |&other: &usize| {
-                other.abs_diff(pose) >= spacing || self.border(other.min(pose), other.max(pose))
-            };
-            if found.iter().all(apart) {
-                found.push(pose);
+        Ok(self.nearest(recent, parts.into_iter().flatten().collect()))
+    }
+
+    /// Places of candidates that are probably near: of those that are known, or else of those whose control points fit best.
+    fn probable(&self, near: &[u32], seen: &[f64]) -> Vec<usize> {
+        let enough = self.enough();
+        if near.len() >= enough || enough == 0 || enough >= seen.len() {
+            return near.iter().filter_map(|pose| self.lattice.poses().binary_search(pose).ok()).collect();
+        }
+        let mut slots: Vec<usize> = (0..seen.len()).collect();
+        slots.select_nth_unstable_by(enough - 1, |&a, &b| seen[a].total_cmp(&seen[b]));
+        slots.truncate(enough);
+        slots
+    }
+
+    /// The same among some candidates, which rise.
+    pub(super) fn among(&self, recent: &Recent, candidates: &[u32]) -> Vec<Example> {
+        let share = self.share();
+        let mut seen = vec![0.0; candidates.len()];
+        if share > 0.0 {
+            let mut planes = Vec::new();
+            let wide = candidates.len().next_multiple_of(SIDE_BY_SIDE);
+            self.trails.fill(&self.poses, candidates, &mut planes);
+            seen.resize(wide, 0.0);
+            self.sight.distances(&planes, &mut seen);
+            seen.truncate(candidates.len());
+            for distance in &mut seen {
+                *distance *= share;
             }
         }
-        Ok(found)
+        let measured = self.measured(recent, candidates, &seen);
+        self.nearest(recent, measured)
     }
 
     /// The pose that fits the control points best.
     pub(super) fn best_fit(&self, interrupt: &Interrupt) -> Result<Option<(usize, Fit)>, Error> {
-        let work = self.poses.count() / self.stride * 20;
-        let parts = parallel::map(self.tasks(), work, |_, range| {
+        let all = self.lattice.poses();
+        let tasks: Vec<Range<usize>> =
+            (0..all.len()).step_by(TASK).map(|start| start..(start + TASK).min(all.len())).collect();
+        let work = all.len() * (self.sight.marks() * 2 + 4);
+        let parts = parallel::map(tasks, work, |_, range| {
             interrupt.check()?;
-            let fits = range
-                .step_by(self.stride)
-                .map(|pose| (pose, self.sight.fit(&self.poses, self.points, pose, self.up)));
-            Ok(fits.reduce(|best, next| if next.1.distance < best.1.distance { next } else { best }))
+            let mut distances = vec![0.0; range.len()];
+            self.sight.distances(self.trails.planes(range.clone()), &mut distances);
+            let of_all = distances.into_iter().zip(range);
+            Ok(of_all.reduce(|best, next| if next.0 < best.0 { next } else { best }))
         })?;
-        Ok(parts
+        let best = parts.into_iter().flatten().reduce(|best, next| if next.0 < best.0 { next } else { best });
+        Ok(best.map(|(_, slot)| {
+            let pose = all[slot] as usize;
+            (pose, self.sight.fit(&self.poses, self.trails.points(), pose, self.up))
+        }))
+    }
+
+    /// How a squared distance of control points counts.
+    fn share(&self) -> f64 {
+        if self.scale.is_finite() { 1.0 / (self.scale * self.scale) } else { 0.0 }
+    }
+
+    fn measured(&self, recent: &Recent, candidates: &[u32], seen: &[f64]) -> Vec<Measured> {
+        let before = |&pose: &u32| pose.saturating_sub(recent.before);
+        let firsts: Vec<u32> = candidates.iter().map(before).collect();
+        let mut squares = vec![0.0; candidates.len()];
+        let dims = 3 * self.poses.joints();
+        squares_of(self.poses.features, dims, &firsts, &recent.probe, &mut squares);
+        let each = squares.iter().zip(candidates).zip(seen);
+        each.map(|((&square, &pose), &seen)| {
+            let [least, greatest] = recent.bounds(square).map(|bound| bound + seen);
+            Measured { least, greatest, seen, pose }
+        })
+        .collect()
+    }
+
+    /// How many of the nearest are needed, however they lie: each that is taken keeps at most so many from being taken.
+    fn enough(&self) -> usize {
+        let beside = self.spacing.saturating_sub(1) / self.lattice.stride();
+        self.count.saturating_mul(2 * beside + 1)
+    }
+
+    /// Takes away what cannot be among those that are needed, and says beyond which distance nothing is.
+    fn limit(&self, measured: &mut Vec<Measured>) -> f64 {
+        let enough = self.enough();
+        if measured.len() < enough || enough == 0 {
+            return f64::INFINITY;
+        }
+        let at = enough - 1;
+        let far = measured.select_nth_unstable_by(at, |a, b| a.greatest.total_cmp(&b.greatest)).1.greatest;
+        measured.retain(|one| {
+            let beyond = one.least > far;
+            !beyond
+        });
+        far
+    }
+
+    fn nearest(&self, recent: &Recent, mut measured: Vec<Measured>) -> Vec<Example> {
+        self.limit(&mut measured);
+        let mut all: Vec<Example> = measured
             .into_iter()
-            .flatten()
-            .reduce(|best, next| if next.1.distance < best.1.distance { next } else { best }))
-    }
-
-    /// Whether a clip ends between two poses.
-    fn border(&self, first: usize, second: usize) -> bool {
-        let before = |pose: usize| {
-            self.poses
-                .starts
-                .partition_point(|&start| usize::try_from(start).is_ok_and(|start| start <= pose))
-        };
-        before(first) != before(second)
-    }
-
-    fn tasks(&self) -> Vec<std::ops::Range<usize>> {
-        let clips = self.poses.old_enough(self.before);
-        let length = TASK.next_multiple_of(self.stride);
-        clips
-            .flat_map(|clip| {
-                let stop = clip.end;
-                clip.step_by(length).map(move |start| start..(start + length).min(stop))
+            .map(|one| {
+                let pose = one.pose as usize;
+                Example { square: recent.exact(&self.poses, pose) + one.seen, pose }
             })
-            .collect()
-    }
-}
-
-fn order(a: &(f64, usize), b: &(f64, usize)) -> std::cmp::Ordering {
-    a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
-}
-
-fn keep_least(items: &mut Vec<(f64, usize)>, count: usize) {
-    if items.len() > count && count > 0 {
-        items.select_nth_unstable_by(count - 1, order);
-        items.truncate(count);
+            .collect();
+        all.sort_unstable_by(|a, b| a.square.total_cmp(&b.square).then(a.pose.cmp(&b.pose)));
+        let mut found: Vec<Example> = Vec::with_capacity(self.count);
+        for one in all {
+            if found.len() == self.count {
+                break;
+            }
+            let apart = |other: &Example| {
+                other.pose.abs_diff(one.pose) >= self.spacing
+                    || self.poses.border(other.pose.min(one.pose), other.pose.max(one.pose))
+            };
+            if found.iter().all(apart) {
+                found.push(one);
+            }
+        }
+        found
     }
 }

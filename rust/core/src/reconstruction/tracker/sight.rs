@@ -1,7 +1,9 @@
 //! Control points of the last frames, and how poses of the database fit them.
 
 use super::poses::Poses;
+use super::trails::LANES;
 use crate::reconstruction::frame::HORIZONTAL;
+use crate::simd::multiversion;
 
 /// A control point of one frame, as a weighted point of the plane with a height.
 #[derive(Debug, Clone, Copy)]
@@ -9,6 +11,8 @@ struct Seen {
     /// Where its row of the trails lies before that of the candidate, and in it.
     lag: usize,
     point: usize,
+    /// Which it is of a candidate's control points side by side.
+    place: usize,
     share: f64,
     level: [f64; 2],
     height: f64,
@@ -17,11 +21,48 @@ struct Seen {
 /// How a pose of the database lies on the control points.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fit {
-    /// Weighted mean of the squared distances that are left; 0 where nothing is seen.
-    pub(super) distance: f64,
     /// Real and imaginary part of `Σ w z̄_i c_i`, whose angle is the turn.
     product: [f64; 2],
     mean: [f64; 2],
+}
+
+multiversion! {
+    /// Weighted means of the squared distances that are left; `planes` are as in [`Trails`](super::trails::Trails).
+    fn distances(planes: &[f32], seen: &[Seen], spread: f64, out: &mut [f64]) {
+        let groups = out.len().div_ceil(LANES).max(1);
+        for (planes, out) in planes.chunks_exact((planes.len() / groups).max(1)).zip(out.chunks_mut(LANES)) {
+            let (planes, _) = planes.as_chunks::<LANES>();
+            let (mut mean, mut product) = ([[0.0; LANES]; 2], [[0.0; LANES]; 2]);
+            let (mut square, mut height) = ([0.0; LANES], [0.0; LANES]);
+            let mut origin = [[0.0; LANES]; 2];
+            for (i, seen) in seen.iter().enumerate() {
+                let [x, y, up] = [0, 1, 2].map(|axis| planes[3 * seen.place + axis].map(f64::from));
+                if i == 0 {
+                    origin = [x, y];
+                }
+                for lane in 0..LANES {
+                    let z = [x[lane] - origin[0][lane], y[lane] - origin[1][lane]];
+                    let above = up[lane] - seen.height;
+                    mean[0][lane] += seen.share * z[0];
+                    mean[1][lane] += seen.share * z[1];
+                    square[lane] += seen.share * (z[0] * z[0] + z[1] * z[1]);
+                    product[0][lane] += seen.share * (z[0] * seen.level[0] + z[1] * seen.level[1]);
+                    product[1][lane] += seen.share * (z[0] * seen.level[1] - z[1] * seen.level[0]);
+                    height[lane] += seen.share * (above * above);
+                }
+            }
+            let mut left = [0.0; LANES];
+            for lane in 0..LANES {
+                let own = square[lane] - (mean[0][lane] * mean[0][lane] + mean[1][lane] * mean[1][lane]);
+                let length = (product[0][lane] * product[0][lane] + product[1][lane] * product[1][lane]).sqrt();
+                let level = own + spread - 2.0 * length;
+                left[lane] = if level > 0.0 { level } else { 0.0 } + height[lane];
+            }
+            for (out, left) in out.iter_mut().zip(left) {
+                *out = left;
+            }
+        }
+    }
 }
 
 /// Control points of the frame in question and of some before.
@@ -40,13 +81,21 @@ impl Sight {
         self.seen.clear();
     }
 
-    /// Takes in the points `(points, 3)` of a frame with their weights.
-    pub(super) fn add(&mut self, lag: usize, positions: &[f64], weights: &[f64], up: usize) {
+    /// Takes in the points `(points, 3)` of a frame with their weights; `(place, lag)` are which frame of the window it is, and
+    /// how many frames ago.
+    pub(super) fn add(
+        &mut self,
+        (place, lag): (usize, usize),
+        positions: &[f64],
+        weights: &[f64],
+        up: usize,
+    ) {
         let [first, second] = HORIZONTAL[up];
         for (point, (at, &share)) in positions.chunks_exact(3).zip(weights).enumerate() {
             if share > 0.0 {
                 let level = [at[first], at[second]];
-                self.seen.push(Seen { lag, point, share, level, height: at[up] });
+                let place = place * weights.len() + point;
+                self.seen.push(Seen { lag, point, place, share, level, height: at[up] });
             }
         }
     }
@@ -68,11 +117,20 @@ impl Sight {
         }
     }
 
+    /// How many control points are compared.
+    pub(super) fn marks(&self) -> usize {
+        self.seen.len()
+    }
+
+    /// The distances that [`fit`](Self::fit) leaves, of candidates side by side.
+    pub(super) fn distances(&self, planes: &[f32], out: &mut [f64]) {
+        distances(planes, &self.seen, self.spread, out);
+    }
+
     /// Lays a pose on the points: turned about the up axis, and moved on the ground.
-    #[inline(always)]
     pub(super) fn fit(&self, poses: &Poses<'_>, points: usize, candidate: usize, up: usize) -> Fit {
         let [first, second] = HORIZONTAL[up];
-        let (mut mean, mut square, mut product, mut height) = ([0.0; 2], 0.0, [0.0; 2], 0.0);
+        let (mut mean, mut product) = ([0.0; 2], [0.0; 2]);
         // From the first point: coordinates of a clip may be large.
         let mut origin = [0.0; 2];
         for (i, seen) in self.seen.iter().enumerate() {
@@ -83,18 +141,11 @@ impl Sight {
                 origin = z;
             }
             let z = [z[0] - origin[0], z[1] - origin[1]];
-            let above = f64::from(at[up]) - seen.height;
             mean = [mean[0] + seen.share * z[0], mean[1] + seen.share * z[1]];
-            square += seen.share * (z[0] * z[0] + z[1] * z[1]);
             product[0] += seen.share * (z[0] * seen.level[0] + z[1] * seen.level[1]);
             product[1] += seen.share * (z[0] * seen.level[1] - z[1] * seen.level[0]);
-            height += seen.share * (above * above);
         }
-        let own = square - (mean[0] * mean[0] + mean[1] * mean[1]);
-        let length = (product[0] * product[0] + product[1] * product[1]).sqrt();
-        let level = own + self.spread - 2.0 * length;
-        let mean = [mean[0] + origin[0], mean[1] + origin[1]];
-        Fit { distance: level.max(0.0) + height, product, mean }
+        Fit { product, mean: [mean[0] + origin[0], mean[1] + origin[1]] }
     }
 
     /// By how much a pose is turned, and moved after the turn.

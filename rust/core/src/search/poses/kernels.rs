@@ -130,7 +130,7 @@ multiversion! {
 
 multiversion! {
     /// Squared distances to segments that begin at the given rows.
-    fn squares_of<T: Real>(rows: &[T], dims: usize, firsts: &[u32], probe: &Probe<T>, out: &mut [T]) {
+    pub(crate) fn squares_of<T: Real>(rows: &[T], dims: usize, firsts: &[u32], probe: &Probe<T>, out: &mut [T]) {
         let width = probe.values.len();
         let firsts = &firsts[..out.len()];
         for i in 0..out.len() {

@@ -25,5 +25,6 @@ pub mod walk;
 pub use best::Best;
 pub use index::Index;
 pub use kernels::Probe;
+pub(crate) use kernels::squares_of;
 pub use nearest::{Nearest, nearest};
 pub use segments::{Layout, Segments};
