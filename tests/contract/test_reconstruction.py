@@ -49,7 +49,6 @@ def positions(frames=4):
         ({"order": 0}, ValueError, "order: expected an integer of at least 1"),
         ({"neighbors": 0}, ValueError, "neighbors: expected an integer of at least 1"),
         ({"model": "svm"}, ValueError, "model: expected one of 'local_regression'"),
-        ({"model": "gplvm"}, ValueError, "model: expected one of .*, got 'gplvm': it is no local model"),
         ({"control_noise": 0}, ValueError, "control_noise: expected a number of at least"),
         ({"control_scale": -1}, ValueError, "control_scale: expected a number above 0"),
         ({"ridge": 0}, ValueError, "ridge: expected a number of at least"),

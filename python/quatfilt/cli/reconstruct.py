@@ -69,7 +69,9 @@ def reconstruct(
     ] = None,
     model: Annotated[
         str,
-        typer.Option(metavar="NAME", help="local_regression, local_pca, local_pcr, nearest or mean_pose."),
+        typer.Option(
+            metavar="NAME", help="local_regression, local_pca, local_pcr, nearest, mean_pose or gplvm."
+        ),
     ] = "local_regression",
     neighbors: Annotated[
         int, typer.Option(metavar="K", help="How many examples a pose is learned from.")

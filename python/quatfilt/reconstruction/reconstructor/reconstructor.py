@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from quatfilt import _validation
-from quatfilt._backend import ops
+from quatfilt._backend import ops, streams
 from quatfilt._typing import Array
 from quatfilt.motion.motion import Motion
 from quatfilt.motion.skeleton import Skeleton
@@ -15,6 +15,7 @@ from quatfilt.reconstruction.database import MotionDatabase
 from quatfilt.reconstruction.database.body import Body
 from quatfilt.reconstruction.reconstructor import trajectories, units
 from quatfilt.reconstruction.reconstructor.examples import Examples
+from quatfilt.reconstruction.reconstructor.latent import LatentModel, LatentTracker
 from quatfilt.reconstruction.reconstructor.settings import ReconstructionModel, Settings
 from quatfilt.reconstruction.reconstructor.stream import ReconstructionStream
 
@@ -43,8 +44,9 @@ class MotionReconstructor:
         How many poses before are compared, and predicted from: the paper's m.
     neighbors : int, default 64
         How many examples a pose is learned from: the paper's K. Of a smaller database all are taken.
-    model : {"local_regression", "local_pca", "local_pcr", "nearest", "mean_pose"}, default "local_regression"
-        As in `predict_pose`.
+    model : {"local_regression", "local_pca", "local_pcr", "nearest", "mean_pose", "gplvm"}, default "local_regression"
+        As in `predict_pose`; ``"gplvm"`` is `PoseGPLVM`, learned here of 500 poses, evenly spaced among those of the database, by GPy
+        (``pip install 'quatfilt[gplvm]'``), which takes some ten seconds.
     control_noise : float or None, skeleton units, default None
         Standard deviation of each coordinate of a trajectory. None: a hundredth of the longest chain of bones from the
         root, about 1 cm for an adult.
@@ -70,6 +72,8 @@ class MotionReconstructor:
 
     Raises
     ------
+    ImportError
+        With ``model="gplvm"`` without GPy.
     ValueError, TypeError
         If there is no such joint, the skeleton has other joints, the database is too small, or an option has another type
         or range than stated; the message names it.
@@ -80,9 +84,15 @@ class MotionReconstructor:
 
     Notes
     -----
-    A frame costs a pass over the features of every fourth pose of the database, `order` times, and a local model of `neighbors`
-    examples.
-    Besides the database, memory holds ``12·(1 + points)`` bytes per pose.
+    A frame costs a look at every fourth pose of the database, its control points first and its features where they leave a doubt, and a
+    local model of `neighbors` examples. Where the database has a `graph`, candidates are the examples of the frame before, the
+    poses after them and the neighbours of both, and all are looked at in the first frame, after four seconds, and where the
+    examples become farther; what that misses are examples, and the result is another.
+    With ``model="gplvm"`` frames go through Python, some milliseconds each: the prior is what the model says at the latent point
+    that is most likely for the last pose, and the root's steps are those of the nearest examples; the first frame is the nearest
+    example's. There is no search by control points, and `control_scale` counts for the first frame only.
+
+    Besides the database, memory holds ``12·(1 + 2·points)`` bytes per pose.
 
     The ground is where the database has it: heights of the trajectories count from there. A quarter of a second at the
     start of each clip of the database serves as the past of examples only.
@@ -148,6 +158,8 @@ class MotionReconstructor:
             raise ValueError(
                 f"database: expected a clip of more than {before} poses at {database.fps:g} fps, got none of more than {longest}"
             )
+        gplvm = self._settings.model == "gplvm"
+        self._latent = LatentModel(self._examples, self._settings) if gplvm else None
         self.energies_: NDArray[np.float64] | None = None
 
     @property
@@ -217,11 +229,11 @@ class MotionReconstructor:
         state = None if initial is None else self._state(initial)
         same = abs(rate / database.fps - 1) <= trajectories.SAME_RATE
         at_rate = seen if same else seen.resampled(rate, database.fps)
-        options, model = self._settings.kernel(self._examples)
-        rotations, translation, energies = ops().track(
-            *self._arguments(options, model, state),
-            *at_rate.targets(self._settings.control_noise, self._settings.orientation_noise),
-        )
+        targets = at_rate.targets(self._settings.control_noise, self._settings.orientation_noise)
+        if self._latent is None:
+            rotations, translation, energies = ops().track(*self._arguments(state), *targets)
+        else:
+            rotations, translation, energies = LatentTracker(self._latent, state).track(*targets)
         rotations = ops().continuous(rotations)
         if not same:
             times = np.arange(len(seen)) * (database.fps / rate)
@@ -244,16 +256,20 @@ class MotionReconstructor:
         ReconstructionStream
             Its poses are those of `reconstruct`.
         """
-        options, model = self._settings.kernel(self._examples)
         state = None if initial is None else self._state(initial)
+        if self._latent is None:
+            tracker = streams().track_stream(*self._arguments(state))
+        else:
+            tracker = LatentTracker(self._latent, state)
         return ReconstructionStream(
-            self._arguments(options, model, state),
+            tracker,
             len(self._examples.points),
             (self._settings.control_noise, self._settings.orientation_noise),
         )
 
-    def _arguments(self, options: Any, model: Any, state: Any) -> tuple[Any, ...]:
+    def _arguments(self, state: Any) -> tuple[Any, ...]:
         examples = self._examples
+        options, model = self._settings.kernel(examples)
         skeleton = examples.skeleton
         return (
             skeleton.parents,
@@ -266,7 +282,7 @@ class MotionReconstructor:
             state,
         )
 
-    def _state(self, motion: Any) -> tuple[Array, Array, float]:
+    def _state(self, motion: Any) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
         """Return the last poses of a motion without their headings, the place of its root and its heading."""
         if not isinstance(motion, Motion):
             raise TypeError(f"initial: expected a Motion or None, got {type(motion).__name__}")

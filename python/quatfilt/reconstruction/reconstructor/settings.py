@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from quatfilt import _validation
 from quatfilt.reconstruction.reconstructor.examples import Examples
 
-ReconstructionModel = Literal["local_regression", "local_pca", "local_pcr", "nearest", "mean_pose"]
+ReconstructionModel = Literal["local_regression", "local_pca", "local_pcr", "nearest", "mean_pose", "gplvm"]
 
 MODELS: tuple[ReconstructionModel, ...] = (
     "local_regression",
@@ -17,6 +17,7 @@ MODELS: tuple[ReconstructionModel, ...] = (
     "local_pcr",
     "nearest",
     "mean_pose",
+    "gplvm",
 )
 
 WINDOW = (0.0, 1 / 12, 1 / 6, 1 / 4)
@@ -95,13 +96,12 @@ class Settings:
         ridge: Any,
     ) -> "Settings":
         """Check what a user passed in."""
-        elsewhere = {"gplvm": "it is no local model, and has to be fitted first; see the documentation"}
         noise = CONTROL_NOISE * reach if control_noise is None else control_noise
         scale = CONTROL_SCALE * reach if control_scale is None else control_scale
         return cls(
             _validation.integer(order, "order", at_least=1, at_most=64),
             _validation.integer(neighbors, "neighbors", at_least=1, at_most=MOST_NEIGHBORS),
-            _validation.choice(model, "model", MODELS, elsewhere=elsewhere),
+            _validation.choice(model, "model", MODELS),
             _validation.number(noise, "control_noise", at_least=1e-6 * reach),
             _validation.number(orientation_noise, "orientation_noise", at_least=1e-6),
             _validation.number(scale, "control_scale", above=0, infinite=True),

@@ -6,7 +6,6 @@ from typing import Any, NamedTuple, NoReturn
 import numpy as np
 from numpy.typing import ArrayLike
 
-from quatfilt._backend import streams
 from quatfilt._typing import Array
 from quatfilt.reconstruction.reconstructor import trajectories
 
@@ -43,8 +42,8 @@ class ReconstructionStream:
 
     Parameters
     ----------
-    arguments : tuple
-        What the core's stream is made of: body, database and options.
+    tracker : object
+        What takes control points in, and gives poses.
     points : int
         How many control points there are.
     noise : tuple of 2 floats, skeleton units and radians
@@ -57,7 +56,7 @@ class ReconstructionStream:
 
     Notes
     -----
-    A stream computes with the Rust core, with every backend.
+    A stream computes with the Rust core, with every backend; that of the model ``"gplvm"`` with the backend in use.
 
     Examples
     --------
@@ -73,8 +72,8 @@ class ReconstructionStream:
     True
     """
 
-    def __init__(self, arguments: tuple[Any, ...], points: int, noise: tuple[float, float]) -> None:
-        self._core = streams().track_stream(*arguments)
+    def __init__(self, tracker: Any, points: int, noise: tuple[float, float]) -> None:
+        self._tracker = tracker
         self._points = points
         self._noise = noise
         self._busy = threading.Lock()
@@ -113,7 +112,7 @@ class ReconstructionStream:
         try:
             seen, dtype = trajectories.checked(positions, orientations, confidence, self._points, one=True)
             targets = (array[0] for array in seen.targets(*self._noise))
-            rotations, translation, energies = self._core.push(*map(np.ascontiguousarray, targets))
+            rotations, translation, energies = self._tracker.push(*map(np.ascontiguousarray, targets))
             if self._last is not None:
                 turned = np.sum(self._last * rotations, axis=1) < 0
                 rotations[turned] *= -1
