@@ -141,6 +141,9 @@ def test_unit_of_the_skeleton_is_told():
     with pytest.raises(ValueError, match=r"multiplied by 0\.1772, they would fit"):
         reconstructor(database=database).reconstruct(positions(), fps=60)
     reconstructor(database=database).reconstruct(positions() / 5.644, fps=60)
+    for centimetres in (10, 0.01):  # in a millimetre, in a metre
+        with pytest.raises(ValueError, match=r"positions: expected the unit of the database, 5\.644 cm"):
+            reconstructor(database=database).reconstruct(positions() * centimetres, fps=60)
 
 
 def sane(result, frames):

@@ -69,6 +69,19 @@ def test_a_graph_is_built_on_request(takes, tmp_path):
     assert "  graph: 16 neighbors of each pose" in run("database", "info", out).stdout.splitlines()
 
 
+def test_a_graph_that_is_interrupted_leaves_the_older_file(takes, tmp_path, monkeypatch):
+    out = tmp_path / "db"
+    out.write_bytes(b"older")
+
+    def interrupted(_db, **_options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(qf.MotionDatabase, "build_graph", interrupted)
+    assert main(["database", "build", str(takes), "-o", str(out), "--graph"]) == 130
+    assert out.read_bytes() == b"older"
+    assert names(tmp_path) == ["db"]
+
+
 def test_info(takes, tmp_path):
     out = tmp_path / "db"
     run("database", "build", takes, "-o", out)

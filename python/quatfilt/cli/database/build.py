@@ -1,6 +1,9 @@
 """``quatfilt database build``: folders of motion files in, a database out."""
 
+import contextlib
 import sys
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -11,6 +14,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from quatfilt import _validation
 from quatfilt.cli import _options, _output
 from quatfilt.cli.database._describe import describe, summary
+from quatfilt.errors import FileAccessError
 from quatfilt.reconstruction.database import MotionDatabase, building
 from quatfilt.reconstruction.database.body import OtherJointsError
 from quatfilt.reconstruction.database.folders import Folders
@@ -91,27 +95,43 @@ def build(
         skip_others=skip_others,
         workers=None if workers is None else _validation.integer(workers, "--workers", at_least=1),
     )
-    with _progress(len(source)) as bar:
+    with _place(output, graph=graph) as place, _progress(len(source)) as bar:
         try:
             building.to_file(
                 source,
                 how,
-                str(output),
+                str(place),
                 mirror=mirror,
                 progress=lambda done, _total: bar.update(bar.task_ids[0], completed=done),
             )
         except OtherJointsError as error:
             raise ValueError(f"{error}; --skip-others leaves out files of other joints than most") from None
+        if graph:
+            poses = MotionDatabase.open(place)
+            poses.build_graph()
+            poses.save(output)
+            del poses  # some systems do not delete a file that is mapped
     db = MotionDatabase.open(output)
-    if graph:
-        db.build_graph()
-        db.save(output)
     if json:
         _output.print_json(describe(output, db))
         return
     for note in db.notes:
         _output.say(note)
     _output.say(f"{summary(output, db)}, written")
+
+
+@contextlib.contextmanager
+def _place(output: Path, *, graph: bool) -> Iterator[Path]:
+    """Say where poses are written: elsewhere where a graph follows, for what has no graph is not what was asked for."""
+    if not graph:
+        yield output
+        return
+    try:
+        folder = tempfile.TemporaryDirectory(prefix=f".{output.name}.", dir=output.parent)
+    except OSError as error:
+        raise FileAccessError(output, error.strerror or str(error)) from None
+    with folder as name:
+        yield Path(name, output.name)
 
 
 def _progress(total: int) -> Progress:

@@ -29,7 +29,7 @@ def check(seen: Trajectories, examples: Examples) -> None:
     ours, theirs = extent(known, examples.database.up), examples.extent
     unit = examples.database.skeleton.centimetres_per_unit
     ratios = [a / b for a, b in zip(ours, theirs, strict=True) if b > 0 and a > 0]
-    for factor in sorted({*CONVERSIONS, unit, 100 / unit, 10 / unit, unit / 100, unit / 10}):
+    for factor in sorted({*CONVERSIONS, unit, 10 * unit, unit / 10, unit / 100}):
         for ratio in (factor, 1 / factor):
             off = max(ratio, 1 / ratio) >= UNLIKE
             if off and ratios and all(_alike(ratio, found) for found in ratios):
