@@ -70,7 +70,7 @@ pub fn nearest<T: Real>(
     Ok(())
 }
 
-/// Measures all candidates.
+/// Measures all candidates: of each the last pose, and the others where that is near enough.
 fn everywhere<T: Real>(
     segments: &Segments<'_, T>,
     queries: &[T],
@@ -78,11 +78,14 @@ fn everywhere<T: Real>(
     count: usize,
     interrupt: &Interrupt,
 ) -> Result<Vec<Best<T>>, Error> {
-    let sought: Vec<(Probe<T>, Range<usize>)> = queries
+    let dims = segments.dims();
+    let sought: Vec<(Probe<T>, Probe<T>, Range<usize>)> = queries
         .chunks_exact(segments.width())
         .enumerate()
-        .map(|(i, query)| (Probe::new(query), excluded(i)))
+        .map(|(i, query)| (Probe::new(query), Probe::new(&query[query.len() - dims..]), excluded(i)))
         .collect();
+    // More than what roundings make a part greater than the whole.
+    let above = T::ONE + T::EPSILON * T::from_f64(segments.width() as f64);
     let mut tasks: Vec<Vec<Range<usize>>> = Vec::new();
     let mut room = 0;
     for ends in segments.clips() {
@@ -108,10 +111,27 @@ fn everywhere<T: Real>(
         for ends in task {
             for first in ends.clone().step_by(STRIP) {
                 let strip = first..ends.end.min(first + STRIP);
-                for ((probe, excluded), best) in sought.iter().zip(&mut bests) {
+                for ((probe, last, excluded), best) in sought.iter().zip(&mut bests) {
                     let squares = &mut squares[..strip.len()];
-                    kernels::in_sequence(segments.rows(&strip), segments.dims(), probe, squares);
-                    offer(best, &strip, squares, excluded);
+                    match best.limit() {
+                        // A segment is no nearer than its last pose.
+                        Some(limit) if segments.length() > 1 => {
+                            let poses = &segments.features()[strip.start * dims..strip.end * dims];
+                            kernels::in_sequence(poses, dims, last, squares);
+                            let limit = limit * above;
+                            for (end, square) in strip.clone().zip(squares) {
+                                if *square <= limit && !excluded.contains(&end) {
+                                    let exact = std::slice::from_mut(square);
+                                    kernels::in_sequence(segments.at(end), dims, probe, exact);
+                                    best.offer(*square, end);
+                                }
+                            }
+                        }
+                        _ => {
+                            kernels::in_sequence(segments.rows(&strip), dims, probe, squares);
+                            offer(best, &strip, squares, excluded);
+                        }
+                    }
                 }
             }
         }
