@@ -16,6 +16,9 @@ const TASK: usize = 8192;
 /// Segments that are measured before they are compared.
 const STRIP: usize = 64;
 
+/// Numbers of its last pose that are measured before the whole segment: half a body, and most segments are too far in these.
+const PART: usize = 48;
+
 /// Queries of a task: all of them see a part of the index while it is in the cache.
 pub(super) const TOGETHER: usize = 4;
 
@@ -70,7 +73,7 @@ pub fn nearest<T: Real>(
     Ok(())
 }
 
-/// Measures all candidates: of each the last pose, and the others where that is near enough.
+/// Measures all candidates: of each a part of the last pose, and all where that is near enough.
 fn everywhere<T: Real>(
     segments: &Segments<'_, T>,
     queries: &[T],
@@ -79,10 +82,11 @@ fn everywhere<T: Real>(
     interrupt: &Interrupt,
 ) -> Result<Vec<Best<T>>, Error> {
     let dims = segments.dims();
+    let part = dims.min(PART);
     let sought: Vec<(Probe<T>, Probe<T>, Range<usize>)> = queries
         .chunks_exact(segments.width())
         .enumerate()
-        .map(|(i, query)| (Probe::new(query), Probe::new(&query[query.len() - dims..]), excluded(i)))
+        .map(|(i, query)| (Probe::new(query), Probe::new(&query[query.len() - dims..][..part]), excluded(i)))
         .collect();
     // More than what roundings make a part greater than the whole.
     let above = T::ONE + T::EPSILON * T::from_f64(segments.width() as f64);
@@ -111,13 +115,13 @@ fn everywhere<T: Real>(
         for ends in task {
             for first in ends.clone().step_by(STRIP) {
                 let strip = first..ends.end.min(first + STRIP);
-                for ((probe, last, excluded), best) in sought.iter().zip(&mut bests) {
+                for ((probe, first, excluded), best) in sought.iter().zip(&mut bests) {
                     let squares = &mut squares[..strip.len()];
                     match best.limit() {
-                        // A segment is no nearer than its last pose.
-                        Some(limit) if segments.length() > 1 => {
+                        // A segment is no nearer than a part of it.
+                        Some(limit) if segments.width() > part => {
                             let poses = &segments.features()[strip.start * dims..strip.end * dims];
-                            kernels::in_sequence(poses, dims, last, squares);
+                            kernels::in_sequence(poses, dims, first, squares);
                             let limit = limit * above;
                             for (end, square) in strip.clone().zip(squares) {
                                 if *square <= limit && !excluded.contains(&end) {
