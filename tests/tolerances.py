@@ -76,8 +76,9 @@ SOLUTION = 1e-9
 its root."""
 
 
-TRACK = 1e-8
-"""Units and energies of a motion of tens of frames, each of which starts from the one before: roundings add up."""
+TRACK = 1e-7
+"""Units and energies of a motion of tens of frames, each of which starts from the one before: `SOLUTION` at the end of a body of a
+hundred units."""
 
 
 def distance(dtype):

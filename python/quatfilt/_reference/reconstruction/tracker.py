@@ -130,7 +130,7 @@ def track(
     offsets: Floats,
     points: NDArray[np.int64],
     up: int,
-    poses: tuple[NDArray[np.generic], ...],
+    poses: tuple[NDArray[np.generic] | None, ...],
     options: tuple[object, ...],
     model: tuple[str, str, str, float, float, float],
     initial: tuple[Floats, Floats, float] | None,

@@ -86,7 +86,7 @@ class MotionReconstructor:
     -----
     A frame costs a look at every fourth pose of the database, its control points first and its features where they leave a doubt, and a
     local model of `neighbors` examples. Where the database has a `graph`, candidates are the examples of the frame before, the
-    poses after them and the neighbours of both, and all are looked at in the first frame, after four seconds, and where the
+    poses after them and the neighbours of both, and all are looked at in the first frame, after a second, and where the
     examples become farther; what that misses are examples, and the result is another.
     With ``model="gplvm"`` frames go through Python, some milliseconds each: the prior is what the model says at the latent point
     that is most likely for the last pose, and the root's steps are those of the nearest examples; the first frame is the nearest

@@ -48,8 +48,8 @@ MOST_STEPS = 12
 MOST_NEIGHBORS = 1024
 """The cost grows with the cube."""
 
-REFRESH = 4.0
-"""Seconds after which all examples are looked at again, where there is a graph: of a million poses that takes 50 frames' time."""
+REFRESH = 1.0
+"""Seconds after which all examples are looked at again, where there is a graph: of a million poses that takes some frames' time."""
 
 FARTHEST = 1.5
 """How many times as far as at best since then the last of the examples may be before all are looked at."""

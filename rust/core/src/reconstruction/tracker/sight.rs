@@ -36,13 +36,16 @@ multiversion! {
             let (mut square, mut height) = ([0.0; LANES], [0.0; LANES]);
             let mut origin = [[0.0; LANES]; 2];
             for (i, seen) in seen.iter().enumerate() {
-                let [x, y, up] = [0, 1, 2].map(|axis| planes[3 * seen.place + axis].map(f64::from));
+                let (x, y, up) = (&planes[3 * seen.place], &planes[3 * seen.place + 1], &planes[3 * seen.place + 2]);
                 if i == 0 {
-                    origin = [x, y];
+                    for lane in 0..LANES {
+                        origin[0][lane] = f64::from(x[lane]);
+                        origin[1][lane] = f64::from(y[lane]);
+                    }
                 }
                 for lane in 0..LANES {
-                    let z = [x[lane] - origin[0][lane], y[lane] - origin[1][lane]];
-                    let above = up[lane] - seen.height;
+                    let z = [f64::from(x[lane]) - origin[0][lane], f64::from(y[lane]) - origin[1][lane]];
+                    let above = f64::from(up[lane]) - seen.height;
                     mean[0][lane] += seen.share * z[0];
                     mean[1][lane] += seen.share * z[1];
                     square[lane] += seen.share * (z[0] * z[0] + z[1] * z[1]);
