@@ -19,6 +19,7 @@ from quatfilt.evaluation.reconstruction_tables_conditions import (
     APART,
     CONTROL_POINTS,
     FPS,
+    LEARNED,
     LONGEST,
     MODELS,
     SHARES,
@@ -186,6 +187,8 @@ def run(
                 for points in CONTROL_POINTS if share == 1 else (4,):
                     database = databases.without(test, share)
                     for model in models:
+                        if share != 1 and model in LEARNED:
+                            continue
                         tables.results.append(
                             _measured(
                                 database,

@@ -79,7 +79,8 @@ def _conditions(tables: Tables) -> list[str]:
         (
             "Errors are means over frames and clips, without golf: angle between true and reconstructed rotations of the joints that do not "
             "flip in the recording itself, in degrees, and distance of all joints, in centimetres. `mean pose` takes the weighted mean of the "
-            "same examples, `nearest neighbour` the next pose of the most similar one; all rows are solved for the control points alike."
+            "same examples, `nearest neighbour` the next pose of the most similar one, `GPLVM` learns 500 poses of the database; all rows are "
+            "solved for the control points alike."
         ),
         "",
     ]
