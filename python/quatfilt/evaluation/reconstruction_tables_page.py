@@ -68,7 +68,7 @@ def _conditions(tables: Tables) -> list[str]:
     sets = "; ".join(f"{count}: {', '.join(names)}" for count, names in CONTROL_POINTS.items())
     return [
         (
-            f"Recordings of {tables.people} people at {FPS:g} frames per second. HeldOut clips, their first {LONGEST} frames: {clips}. The "
+            f"Recordings of {tables.people} people at {FPS:g} frames per second. Test clips, their first {LONGEST} frames: {clips}. The "
             "database holds all clips of all other people; of golf there is one recording, so that every other frame of it is in "
             "the database as well, and its numbers are no test. The performer's bone lengths are given; defaults throughout. They "
             "were chosen on three people who are not tested."
