@@ -21,13 +21,16 @@ def draw(tables: Tables, file: Path) -> None:
         axes = page.add_subplot(grid[row, 0])
         _points(axes, tables, measure)
         axes.set_ylabel(label)
+        panels = [axes]
         if row == 0:
             axes.legend(frameon=False, fontsize=8)
         for column, count in enumerate((6, 4), start=1):
             bars = page.add_subplot(grid[row, column], sharey=axes)
             _actions(bars, tables, measure, count)
+            panels.append(bars)
             if row == 0:
                 bars.set_title(f"By action, {count} control points", loc="left", fontsize=10)
+        axes.set_ylim(0, 1.05 * max(panel.dataLim.y1 for panel in panels))
     page.savefig(file)
 
 
@@ -37,7 +40,6 @@ def _points(axes: Any, tables: Tables, measure: str) -> None:
         values = [tables.mean(measure, model=model, points=count, share=1, known=False) for count in counts]
         axes.plot(counts, values, color=colour, marker="o", markersize=4, linewidth=1.5, label=MODELS[model])
     quiet(axes)
-    axes.set_ylim(0, None)
     axes.set_xticks(counts)
     axes.set_xlabel("control points")
 
