@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import quatfilt as qf
 from quatfilt.evaluation import reconstruction_tables as tables
+from quatfilt.evaluation import reconstruction_tables_databases as databases
 from quatfilt.evaluation import reconstruction_tables_page as page
 from quatfilt.evaluation import reconstruction_tables_picture as picture
 from quatfilt.evaluation._written import write
@@ -41,14 +42,14 @@ def test_nobody_is_tested_whom_the_defaults_were_chosen_on():
 
 
 def test_a_person_is_never_in_the_database_of_a_test(folder):
-    databases = tables._Databases(tables.Recordings(folder))
-    assert set(databases.without(FEW[0]).clip_names) == {"07_01", "07_02", "golf_01"}
-    assert set(databases.without(FEW[0], known=True).clip_names) == {"07_01", "07_02", "08_02", "golf_01"}
-    assert set(databases.without(FEW[1]).clip_names) == {"07_01", "07_02", "08_01", "08_02", "golf_01"}
+    made = databases.Databases(databases.Recordings(folder))
+    assert set(made.without(FEW[0]).clip_names) == {"07_01", "07_02", "golf_01"}
+    assert set(made.without(FEW[0], known=True).clip_names) == {"07_01", "07_02", "08_02", "golf_01"}
+    assert set(made.without(FEW[1]).clip_names) == {"07_01", "07_02", "08_01", "08_02", "golf_01"}
 
 
 def test_frames_between_are_other_frames(folder):
-    recordings = tables.Recordings(folder)
+    recordings = databases.Recordings(folder)
     even, odd = recordings["golf_01"], recordings.between("golf_01")
     whole = qf.read_motion(recordings.paths["golf_01"])
     np.testing.assert_array_equal(even.rotations, whole.rotations[::2])
@@ -57,7 +58,7 @@ def test_frames_between_are_other_frames(folder):
 
 
 def test_errors_are_those_of_the_metrics(folder):
-    truth = tables.cut(tables.Recordings(folder)["08_01"])
+    truth = tables.cut(databases.Recordings(folder)["08_01"])
     assert tables.errors(truth, truth) == (0, 0)
     lifted = truth.replace(translation=truth.translation + np.array([0.0, 1.0, 0.0]))
     angle, position = tables.errors(truth, lifted)

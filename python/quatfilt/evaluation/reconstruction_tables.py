@@ -1,7 +1,6 @@
 """Reconstruction from a few trajectories: errors by control points, action and size of the database, and the limits."""
 
 import contextlib
-import csv
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -11,11 +10,9 @@ from typing import Any
 import numpy as np
 
 from quatfilt._backend import get_num_threads, set_num_threads
-from quatfilt.errors import FileAccessError
 from quatfilt.evaluation.channels import Values
 from quatfilt.evaluation.clips import find
 from quatfilt.evaluation.reconstruction_tables_conditions import (
-    ABSENT,
     APART,
     CONTROL_POINTS,
     FPS,
@@ -24,10 +21,9 @@ from quatfilt.evaluation.reconstruction_tables_conditions import (
     MODELS,
     SHARES,
     TESTS,
-    TWICE,
     HeldOut,
 )
-from quatfilt.formats.files import read_motion
+from quatfilt.evaluation.reconstruction_tables_databases import Databases, Recordings
 from quatfilt.motion import metrics
 from quatfilt.motion.defects import find_defects
 from quatfilt.motion.motion import Motion
@@ -97,45 +93,6 @@ class Tables:
         return float(np.mean(values)) if values else float("nan")
 
 
-class Recordings:
-    """The clips of a folder by name, read once, at the rate of the databases or faster."""
-
-    def __init__(self, data: Path) -> None:
-        self.paths = {path.stem: path for path in sorted(data.rglob("*.amc")) if path.stem not in TWICE}
-        self.descriptions = _descriptions(data)
-        self._motions: dict[str, Motion] = {}
-
-    def __getitem__(self, name: str) -> Motion:
-        if name not in self._motions:
-            motion = read_motion(self.paths[name])
-            every = max(round(motion.fps / FPS), 1)
-            self._motions[name] = motion.replace(
-                rotations=motion.rotations[::every],
-                translation=motion.translation[::every],
-                fps=motion.fps / every,
-            )
-        return self._motions[name]
-
-    def between(self, name: str) -> Motion:
-        """Return the frames of a clip that `[name]` leaves out."""
-        motion = read_motion(self.paths[name])
-        every = max(round(motion.fps / FPS), 1)
-        return motion.replace(
-            rotations=motion.rotations[1::every],
-            translation=motion.translation[1::every],
-            fps=motion.fps / every,
-        )
-
-    def person(self, name: str) -> str:
-        """Return the folder of a clip, which is its performer's."""
-        return self.paths[name].parent.name
-
-    @property
-    def people(self) -> set[str]:
-        """Folders with clips."""
-        return {self.person(name) for name in self.paths}
-
-
 def run(
     data: Path,
     *,
@@ -178,7 +135,7 @@ def run(
     tell = progress or (lambda _done, _total: None)
     total = len(tests) * len(SHARES) + 1
     done = 0
-    databases = _Databases(recordings)
+    databases = Databases(recordings)
     with one_thread():
         for test in tests:
             truth = cut(recordings[test.name])
@@ -224,43 +181,6 @@ def one_thread() -> Iterator[None]:
         set_num_threads(before)
 
 
-class _Databases:
-    """Databases without the person of a test, or without its clip alone; the last ones are kept."""
-
-    def __init__(self, recordings: Recordings) -> None:
-        self._recordings = recordings
-        self._kept: dict[tuple[str, int, bool], MotionDatabase] = {}
-
-    def without(
-        self, test: HeldOut, share: int = 1, *, absent: bool = False, known: bool = False
-    ) -> MotionDatabase:
-        """Return a database of one clip in `share`; without an action if `absent`; with the same person if `known`."""
-        recordings = self._recordings
-        person = recordings.person(test.name)
-        key = (test.name if known else person, share, absent)
-        if key not in self._kept:
-            if len(self._kept) > len(SHARES):
-                self._kept.clear()
-            names = [
-                name
-                for name in recordings.paths
-                if (name != test.name if known else recordings.person(name) != person)
-            ]
-            if absent:
-                names = [
-                    name
-                    for name in names
-                    if not any(word in recordings.descriptions.get(name, "") for word in ABSENT)
-                ]
-            names = names[::share]
-            motions = [recordings[name] for name in names]
-            if test.inside:
-                motions.append(recordings.between(test.name))
-                names.append(test.name)
-            self._kept[key] = MotionDatabase.from_motions(motions, fps=FPS, clip_names=names)
-        return self._kept[key]
-
-
 def _measured(
     database: MotionDatabase,
     truth: Motion,
@@ -298,7 +218,7 @@ def _measured(
     )
 
 
-def limits(databases: _Databases, recordings: Recordings, tests: Sequence[HeldOut]) -> list[Limit]:
+def limits(databases: Databases, recordings: Recordings, tests: Sequence[HeldOut]) -> list[Limit]:
     """Try what the paper names: an action that is missing, and control points that conflict."""
     found = []
     for test in tests:
@@ -352,24 +272,6 @@ def _positions(motion: Motion, names: Sequence[str]) -> Values:
 def _fast(motion: Motion) -> float:
     steps = np.linalg.norm(np.diff(np.asarray(motion.positions(), np.float64), axis=0), axis=-1)
     return float(np.percentile(steps, 99) * motion.fps)
-
-
-def _descriptions(data: Path) -> Mapping[str, str]:
-    """Return what an index of recordings says of them, in lower case; nothing without one."""
-    for folder in (data, data.parent):
-        file = folder / "index.csv"
-        if file.is_file():
-            try:
-                with file.open(encoding="utf-8", newline="") as lines:
-                    rows = list(csv.DictReader(lines))
-            except OSError as error:
-                raise FileAccessError(file, str(error.strerror)) from None
-            return {
-                Path(row["path"]).stem: f"{row.get('action', '')}; {row.get('description', '')}".lower()
-                for row in rows
-                if row.get("path", "").endswith(".amc")
-            }
-    return {}
 
 
 def as_dict(tables: Tables, run: Mapping[str, Any]) -> dict[str, Any]:
