@@ -97,8 +97,8 @@ def denoise(
 ) -> None:
     """Clean a motion file.
 
-    By default each pose becomes the mean of the poses around it in time, weighted by how alike their neighbourhoods
-    look. --method and --preset run other filters, or several.
+    By default spikes are replaced, and every joint is smoothed as much as its noise asks for. --method and --preset run
+    other filters, or several.
     """
     _options.use_threads(threads)
     wish = _steps.asked(
