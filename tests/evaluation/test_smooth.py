@@ -59,3 +59,10 @@ def test_recordings(data_dir, clip):
     steps = clips.angles(clean[1:], clean[:-1]).max(axis=0)
     found = gains(clean, (steps > 0) & (steps < FASTEST), 0)
     assert (found > 1.5).all()
+
+
+@pytest.mark.parametrize(("multiple", "gain"), [(50, 16), (75, 14)])
+def test_noise_that_wraps(multiple, gain):
+    clean = walk(seconds=8).rotations
+    noisy = clips.noisy(np.random.default_rng(1), clean, multiple * SIGMA)
+    assert psnr(clips.angles(qf.denoise(noisy), clean)) > psnr(clips.angles(noisy, clean)) + gain

@@ -184,7 +184,7 @@ def smoothed_numbers(column, noise, weights=None):
 
 def smoothed_vectors(vectors, noise):
     """Two rounds along the principal axes of the steps of a mean, with SciPy, of vectors `(frames, 3)`."""
-    mean = gaussian_filter1d(vectors, 6, axis=0, mode="mirror")
+    mean = gaussian_filter1d(vectors, 10, axis=0, mode="mirror")
     for _ in range(2):
         axes = linalg.svd(np.diff(mean, axis=0), full_matrices=False)[2]
         mean = np.stack([smoothed_numbers(column, noise) for column in axes @ vectors.T], axis=1) @ axes

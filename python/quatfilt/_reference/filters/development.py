@@ -19,15 +19,31 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from quatfilt._reference._arrays import Reals
 from quatfilt._reference.filters.boundary import Boundary, extend_by_index, extend_vectors
 from quatfilt._reference.filters.nonlocal_pose_means.nonlocal_pose_means import in_hemisphere_of
+from quatfilt._reference.noise.coherence import coherence
 from quatfilt._reference.rotations.quaternion import between, exp, log_short, multiply, norm, normalize
 
 SHORTEST_MEAN = 0.1
 """Length of an average of unit quaternions below which its direction is chance: the frames turn right round within the
 mask."""
+
+LEAST_CLARITY = 1 / 16
+"""Where noise leaves less, the reference path takes no more frames for it."""
+
+CLEAR = 0.8
+"""Clarity from which the sign of the first sample is to be relied on."""
+
+
+def clarity(noise: Reals) -> Reals:
+    """Return what noise leaves of the squared length of a mean of rotations, at least `LEAST_CLARITY`; `(joints,)`.
+
+    So many times as many frames make a reference path that is as clear as without noise.
+    """
+    return np.maximum(coherence(noise) ** 2, LEAST_CLARITY)
 
 
 def develop(q: Reals, confidence: Reals | None, reference_sigma: Reals) -> tuple[Reals, Reals, Reals]:
@@ -51,7 +67,7 @@ def develop(q: Reals, confidence: Reals | None, reference_sigma: Reals) -> tuple
     vectors : array (frames, joints, 3), float64, radians
         `y`.
     """
-    path = aligned(normalize(q.astype(np.float64)), confidence)
+    path = aligned(normalize(q.astype(np.float64)), confidence, np.ones(q.shape[1]))
     return developed_about(reference_path(path, confidence, reference_sigma), path)
 
 
@@ -85,20 +101,29 @@ def undevelop(q: Reals, reference: Reals, development: Reals, vectors: Reals) ->
     return in_hemisphere_of(moved, q).astype(q.dtype)
 
 
-def aligned(path: Reals, confidence: Reals | None) -> Reals:
+def aligned(path: Reals, confidence: Reals | None, clear: Reals) -> Reals:
     """Choose the signs of unit quaternions so that they can be averaged.
 
     Each takes the hemisphere of a running mean of those before it, to which it then adds half of itself, the less the less
-    it is trusted. Beside the sample before alone, noise would turn the sign of the rest of the path too often.
+    it is trusted and the less noise leaves `clear`. Beside the sample before alone, noise would turn the sign of the rest of the
+    path too often. Joints in heavy noise go back to the first frame in the same way: it is not the one to begin with.
     """
     result = path.copy()
     if len(path) == 0:
         return result
     share = np.full(path.shape[:2], 0.5) if confidence is None else confidence.astype(np.float64) / 2
+    share = share * clear
     mean = path[0].copy()
+
+    def take(t: int, joints: NDArray[np.bool_] | slice) -> None:
+        result[t, joints] *= np.where(np.sum(mean[joints] * result[t, joints], axis=-1) < 0, -1, 1)[:, None]
+        mean[joints] += share[t, joints, None] * (result[t, joints] - mean[joints])
+
     for t in range(1, len(path)):
-        result[t] *= np.where(np.sum(mean * path[t], axis=-1) < 0, -1, 1)[:, None]
-        mean += share[t, :, None] * (result[t] - mean)
+        take(t, slice(None))
+    if (clear < CLEAR).any():
+        for t in range(len(path) - 1, -1, -1):
+            take(t, clear < CLEAR)
     return result
 
 

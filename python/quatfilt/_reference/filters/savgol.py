@@ -71,7 +71,7 @@ def savgol_derivative(
     -------
     array (frames, joints, 3), rad/s or rad/s²
     """
-    path = aligned(normalize(q.astype(np.float64)), confidence)
+    path = aligned(normalize(q.astype(np.float64)), confidence, np.ones(q.shape[1]))
     reference, development, vectors = develop(q, confidence, reference_sigma)
     moved = fitted_joints(development, vectors, confidence, fit, values)
     smooth = undevelop(path, reference, development, moved)

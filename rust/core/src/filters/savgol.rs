@@ -45,8 +45,12 @@ impl Savgol {
         check_length("derivatives", self.values.len(), derivatives.len())?;
         check_length("out", frames * joints * 3, out.len())?;
         let derivative = Self { values: derivatives, ..self.clone() };
-        let results =
-            input.each_joint(3, 2 * self.nanoseconds(), interrupt, |joint, mut path, spare, rows| {
+        let results = input.each_joint(
+            |_| 0.0,
+            3,
+            2 * self.nanoseconds(),
+            interrupt,
+            |joint, mut path, spare, rows| {
                 self.smooth(joint, path.columns(), spare, interrupt)?;
                 path.follow_vectors();
                 path.roll_out();
@@ -57,7 +61,8 @@ impl Savgol {
                     }
                 }
                 Ok(())
-            })?;
+            },
+        )?;
         interleave(&results, 3, 0..3, joints, out)
     }
 

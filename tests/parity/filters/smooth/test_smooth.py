@@ -112,6 +112,17 @@ def test_fast_turns_and_much_noise(dtype):
 
 
 @pytest.mark.parametrize("dtype", DTYPES)
+@pytest.mark.parametrize("sigma", [0.3, 0.8, 1.2, 1.6])
+@pytest.mark.parametrize("trusting", [False, True])
+def test_noise_that_wraps(sigma, trusting, dtype):
+    rng = np.random.default_rng(5)
+    q = clips.noisy(rng, clips.smooth(rng, 600, 3), sigma)
+    q[:, 1] = clips.noisy(rng, clips.smooth(rng, 600, 1), 0.05)[:, 0]
+    trust = np.maximum(clips.confidences(rng, 600, 3), 0.05) if trusting else None
+    agree(clips.flipped(rng, q).astype(dtype), [sigma, 0.05, sigma], confidence=trust)
+
+
+@pytest.mark.parametrize("dtype", DTYPES)
 @pytest.mark.parametrize("noise", [1e-12, 1e-6, 1e3, 1e90, 1e-99, 1e-101])
 def test_far_too_little_and_far_too_much_noise(noise, dtype):
     rng = np.random.default_rng(3)

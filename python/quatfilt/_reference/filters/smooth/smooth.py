@@ -5,6 +5,7 @@ import numpy as np
 from quatfilt._reference._arrays import Reals
 from quatfilt._reference.filters.development import (
     aligned,
+    clarity,
     developed_about,
     gaussian_mask,
     reference_path,
@@ -14,8 +15,8 @@ from quatfilt._reference.filters.development import (
 from quatfilt._reference.filters.smooth.penalised import penalised_column
 from quatfilt._reference.rotations.quaternion import exp, multiply, normalize
 
-REFERENCE_SIGMA = 6.0
-"""Frames: deviation of the Gaussian mask that makes the first reference path."""
+REFERENCE_SIGMA = 10.0
+"""Frames: deviation of the Gaussian mask that makes the first reference path, without noise; heavy noise asks for more."""
 
 ROUNDS = 2
 """How often the clip is smoothed about a reference path. The second is the result of the first: nearer to the truth, it bends
@@ -57,8 +58,9 @@ def smooth(
     if frames < 2 or joints == 0:
         return normalize(q), None if translation is None else translation.copy()
     weights = np.ones((frames, joints)) if confidence is None else confidence.astype(np.float64)
-    path = aligned(normalize(q.astype(np.float64)), confidence)
-    reference = reference_path(path, confidence, np.full(joints, REFERENCE_SIGMA))
+    clear = clarity(noise)
+    path = aligned(normalize(q.astype(np.float64)), confidence, clear)
+    reference = reference_path(path, confidence, REFERENCE_SIGMA / clear)
     for _ in range(ROUNDS):
         reference, development, vectors = developed_about(reference, path)
         moved = np.stack(

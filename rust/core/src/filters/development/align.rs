@@ -13,6 +13,9 @@ pub(super) const GROUP: usize = 4;
 /// Planes of a joint: its quaternions and its confidence.
 pub(super) const ROWS: usize = 5;
 
+/// Clarity from which the sign of the first sample is to be relied on.
+const CLEAR: f64 = 0.8;
+
 /// Frames per chunk.
 const CHUNK: usize = 64;
 
@@ -22,10 +25,12 @@ type Chunk = [[f64; CHUNK]; 4];
 /// Reads unit quaternions of the joints of `range`, and their confidence: [`ROWS`] planes for each.
 ///
 /// Each quaternion takes the hemisphere of a running mean of those before it, to which it then adds half of itself, the less
-/// the less it is trusted. Beside the sample before alone, noise would turn the sign of the rest of the path too often.
+/// the less it is trusted and the less noise leaves `clear`. Beside the sample before alone, noise would turn the sign of the rest
+/// of the path too often. Joints in heavy noise go back to the first frame in the same way: it is not the one to begin with.
 pub(super) fn load<T: Real>(
     clip: ClipView<'_, T>,
     confidence: Option<&[T]>,
+    clarity: &[f64],
     range: Range<usize>,
     planes: &mut Planes<f64>,
 ) {
@@ -34,7 +39,7 @@ pub(super) fn load<T: Real>(
     planes.reshape(joints * ROWS, frames.next_multiple_of(BLOCK));
     let mut rows = [[T::ONE; GROUP * 4]; CHUNK];
     let mut samples = [[[1.0; CHUNK]; 4]; GROUP];
-    let mut shares = [[0.5; CHUNK]; GROUP];
+    let mut halves = [[0.5; CHUNK]; GROUP];
     let mut means = [None; GROUP];
     for start in (0..frames).step_by(CHUNK) {
         let length = CHUNK.min(frames - start);
@@ -52,21 +57,43 @@ pub(super) fn load<T: Real>(
         if let Some(confidence) = confidence {
             let frames = confidence[start * clip.joints()..].chunks_exact(clip.joints());
             for (i, trust) in frames.take(length).enumerate() {
-                for (share, trust) in shares.iter_mut().zip(&trust[range.clone()]) {
-                    share[i] = trust.to_f64() * 0.5;
+                for (half, trust) in halves.iter_mut().zip(&trust[range.clone()]) {
+                    half[i] = trust.to_f64() * 0.5;
                 }
             }
         }
-        align(&mut samples[..joints], &shares, &mut means, length);
-        for (joint, (samples, shares)) in samples[..joints].iter().zip(&shares).enumerate() {
+        align(&mut samples[..joints], &halves, &clarity[range.clone()], &mut means, length);
+        for (joint, (samples, halves)) in samples[..joints].iter().zip(&halves).enumerate() {
             let [w, x, y, z, trust] = planes.rows_mut::<ROWS>(joint * ROWS);
             for (plane, samples) in [w, x, y, z].into_iter().zip(samples) {
                 plane[start..start + length].copy_from_slice(&samples[..length]);
             }
-            for (trust, share) in trust[start..start + length].iter_mut().zip(shares) {
-                *trust = share + share;
+            for (trust, half) in trust[start..start + length].iter_mut().zip(halves) {
+                *trust = half + half;
             }
         }
+    }
+    for (joint, (mean, &clear)) in means.iter().zip(&clarity[range]).enumerate() {
+        if let Some(mean) = mean
+            && clear < CLEAR
+        {
+            go_back(planes.rows_mut::<ROWS>(joint * ROWS), frames, clear, *mean);
+        }
+    }
+}
+
+/// Turns the signs of a joint once more, from the last frame to the first.
+fn go_back(planes: [&mut [f64]; ROWS], frames: usize, clear: f64, mean: [f64; 4]) {
+    let mut mean = mean;
+    let [mut samples @ .., trust] = planes;
+    for i in (0..frames).rev() {
+        let q = samples.each_ref().map(|plane| plane[i]);
+        let q = if dot(mean, q) < 0.0 { q.map(|x| -x) } else { q };
+        for (plane, x) in samples.iter_mut().zip(q) {
+            plane[i] = x;
+        }
+        let share = trust[i] * 0.5 * clear;
+        mean = std::array::from_fn(|c| mean[c] + share * (q[c] - mean[c]));
     }
 }
 
@@ -92,13 +119,15 @@ multiversion! {
 /// Turns the signs of the first `length` quaternions of each joint, and moves the running means along.
 fn align(
     samples: &mut [Chunk],
-    shares: &[[f64; CHUNK]; GROUP],
+    halves: &[[f64; CHUNK]; GROUP],
+    clarity: &[f64],
     means: &mut [Option<[f64; 4]>],
     length: usize,
 ) {
     // The joints' chains of sums do not wait for each other.
     for i in 0..length {
-        for ((samples, shares), kept) in samples.iter_mut().zip(shares).zip(means.iter_mut()) {
+        let joints = samples.iter_mut().zip(halves).zip(clarity).zip(means.iter_mut());
+        for (((samples, halves), clear), kept) in joints {
             let q = [samples[0][i], samples[1][i], samples[2][i], samples[3][i]];
             let mean = kept.unwrap_or(q);
             let sign = if dot(mean, q) < 0.0 { -1.0 } else { 1.0 };
@@ -106,7 +135,8 @@ fn align(
             for (samples, q) in samples.iter_mut().zip(q) {
                 samples[i] = q;
             }
-            *kept = Some(std::array::from_fn(|c| mean[c] + shares[i] * (q[c] - mean[c])));
+            let share = halves[i] * clear;
+            *kept = Some(std::array::from_fn(|c| mean[c] + share * (q[c] - mean[c])));
         }
     }
 }

@@ -20,6 +20,7 @@ use super::columns::{BLOCK, Mask};
 pub use super::local::Translation;
 use crate::clip::Planes;
 use crate::error::check_length;
+use crate::noise::coherence::coherence;
 use crate::parallel::{self, Interrupt};
 use crate::rotations::quaternion;
 use crate::window::Boundary;
@@ -34,6 +35,9 @@ use std::sync::Mutex;
 /// Estimated nanoseconds per frame and joint of the way to the vectors and back.
 const NANOSECONDS: usize = 60;
 
+/// Where noise leaves less of a mean, the reference path takes no more frames for it.
+const LEAST_CLARITY: f64 = 1.0 / 16.0;
+
 /// A filter for numbers, to be applied to rotations by [`Input::filter`].
 pub trait Smooth: Sync {
     /// Estimated nanoseconds per frame and joint.
@@ -45,6 +49,12 @@ pub trait Smooth: Sync {
     /// [`Error::Length`], [`Error::Parameter`].
     fn check(&self, _frames: usize, _joints: usize) -> Result<(), Error> {
         Ok(())
+    }
+
+    /// Deviation of the noise of a joint per component of the rotation vector in radians, where it is known: in heavy noise the
+    /// reference path takes the mean of more frames.
+    fn noise(&self, _joint: usize) -> f64 {
+        0.0
     }
 
     /// How often the rotations are filtered, each time about the result of the time before.
@@ -89,6 +99,13 @@ pub struct Input<'a, T> {
     pub reference_sigma: &'a [f64],
 }
 
+/// What noise leaves of the squared length of a mean of rotations, at least [`LEAST_CLARITY`]: so many times as many frames make a
+/// reference path that is as clear as without noise.
+fn clarity(noise: f64) -> f64 {
+    let length = coherence(noise);
+    (length * length).max(LEAST_CLARITY)
+}
+
 /// Memory that goes from task to task: fresh pages cost as much as the arithmetic.
 #[derive(Debug, Default)]
 struct Buffers {
@@ -105,17 +122,24 @@ impl<T: Real> Input<'_, T> {
         self.confidence.map_or(Ok(()), |trust| check_length("confidence", samples, trust.len()))
     }
 
-    /// Develops each joint and lets `work` write what it makes of it: `width` numbers for each frame. The results stand one
-    /// joint after the other.
+    /// Develops each joint, which has so much noise, and lets `work` write what it makes of it: `width` numbers for each frame. The
+    /// results stand one joint after the other.
     pub(super) fn each_joint<W: Real>(
         &self,
+        noise: impl Fn(usize) -> f64,
         width: usize,
         nanoseconds: usize,
         interrupt: &Interrupt,
         work: impl Fn(usize, Joint<'_>, &mut Planes<f64>, &mut [W]) -> Result<(), Error> + Sync + Send,
     ) -> Result<Vec<W>, Error> {
         let (frames, joints) = (self.clip.frames(), self.clip.joints());
-        let masks: Vec<Mask> = self.reference_sigma.iter().map(|&sigma| Mask::gaussian(sigma)).collect();
+        let clarity: Vec<f64> = (0..joints).map(|joint| clarity(noise(joint))).collect();
+        let masks: Vec<Mask> = self
+            .reference_sigma
+            .iter()
+            .zip(&clarity)
+            .map(|(sigma, clear)| Mask::gaussian(sigma / clear))
+            .collect();
         let mut results = vec![W::ZERO; frames * joints * width];
         let groups: Vec<&mut [W]> = results.chunks_mut((frames * width * GROUP).max(1)).collect();
         let kept: Mutex<Vec<Buffers>> = Mutex::default();
@@ -123,7 +147,7 @@ impl<T: Real> Input<'_, T> {
             let mut buffers = kept.lock().map_or(None, |mut kept| kept.pop()).unwrap_or_default();
             let Buffers { samples, joint, spare } = &mut buffers;
             let first = group * GROUP;
-            align::load(self.clip, self.confidence, first..joints.min(first + GROUP), samples);
+            align::load(self.clip, self.confidence, &clarity, first..joints.min(first + GROUP), samples);
             for (i, results) in results.chunks_mut(frames * width).enumerate() {
                 interrupt.check()?;
                 let [w, x, y, z, trust] = samples.rows_mut(i * align::ROWS);
@@ -172,8 +196,12 @@ impl<T: Real> Input<'_, T> {
         if short {
             return quaternion::normalize(self.clip.data(), out);
         }
-        let results =
-            self.each_joint(4, filter.nanoseconds(), interrupt, |joint, mut path, spare, rows| {
+        let results = self.each_joint(
+            |joint| filter.noise(joint),
+            4,
+            filter.nanoseconds(),
+            interrupt,
+            |joint, mut path, spare, rows| {
                 for round in 0..filter.rounds() {
                     if round > 0 {
                         path.roll_out();
@@ -183,7 +211,8 @@ impl<T: Real> Input<'_, T> {
                 }
                 store(&path, self.clip.at(0, joint), rows);
                 Ok(())
-            })?;
+            },
+        )?;
         interleave(&results, 4, 0..4, joints, out)
     }
 
@@ -270,15 +299,21 @@ pub fn develop<T: Real>(
     check_length("reference", samples * 4, reference.len())?;
     check_length("development", samples * 3, development.len())?;
     check_length("vectors", samples * 3, vectors.len())?;
-    let results = input.each_joint(WIDTH, 0, interrupt, |_, path, _, rows: &mut [f64]| {
-        for (frame, row) in rows.chunks_exact_mut(WIDTH).enumerate() {
-            let planes = path.reference.iter().chain(&path.development).chain(&path.vectors);
-            for (value, plane) in row.iter_mut().zip(planes) {
-                *value = plane[frame];
+    let results = input.each_joint(
+        |_| 0.0,
+        WIDTH,
+        0,
+        interrupt,
+        |_, path, _, rows: &mut [f64]| {
+            for (frame, row) in rows.chunks_exact_mut(WIDTH).enumerate() {
+                let planes = path.reference.iter().chain(&path.development).chain(&path.vectors);
+                for (value, plane) in row.iter_mut().zip(planes) {
+                    *value = plane[frame];
+                }
             }
-        }
-        Ok(())
-    })?;
+            Ok(())
+        },
+    )?;
     let joints = input.clip.joints();
     interleave(&results, WIDTH, 0..4, joints, reference)?;
     interleave(&results, WIDTH, 4..7, joints, development)?;

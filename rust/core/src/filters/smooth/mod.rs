@@ -31,8 +31,8 @@ pub use body::smooth_body;
 pub use patches::smooth_patches;
 use strength::Candidates;
 
-/// Deviation in frames of the Gaussian mask that makes the first reference path.
-pub const REFERENCE_SIGMA: f64 = 6.0;
+/// Deviation in frames of the Gaussian mask that makes the first reference path, without noise; heavy noise asks for more.
+pub const REFERENCE_SIGMA: f64 = 10.0;
 
 /// Whatever is measured in less noise has squares that may be infinite; such noise counts as none.
 const LEAST_NOISE: f64 = 1e-100;
@@ -86,6 +86,10 @@ impl Smooth for Smoother {
             check_length("frames", candidates.frames(), frames)?;
         }
         check_length("noise", joints, self.noise.len())
+    }
+
+    fn noise(&self, joint: usize) -> f64 {
+        self.noise[joint]
     }
 
     fn rounds(&self) -> usize {
