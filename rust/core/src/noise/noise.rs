@@ -131,16 +131,15 @@ fn level<T: Real>(planes: [&mut [T]; 3], buffer: &mut Vec<T>) -> f64 {
 /// Rotations with noise of the coherence `f` about the same rotation have `E (4 (q·q')² − 1)/3 = f²`, from which motion takes away
 /// by the square of the lag between the two.
 fn heavy_level<T: Real>(q: ClipView<'_, T>, joint: usize) -> Option<f64> {
-    let mut before = [[0.0; 4]; LAGS];
+    let mut before = [None; LAGS];
     let (mut totals, mut counts) = ([0.0; LAGS], [0_usize; LAGS]);
     for frame in 0..q.frames() {
         let sample = q.at(frame, joint).map(T::to_f64);
         let length = dot(sample, sample).sqrt();
         let valid = (length > 0.0) & length.is_finite();
-        let here = sample.map(|x| if valid { x / length } else { 0.0 });
+        let here = valid.then(|| sample.map(|x| x / length));
         for lag in 1..=LAGS.min(frame) {
-            let there = before[(frame - lag) % LAGS];
-            if valid && there != [0.0; 4] {
+            if let Some((here, there)) = here.zip(before[(frame - lag) % LAGS]) {
                 let alike = dot(here, there);
                 totals[lag - 1] += (4.0 * alike * alike - 1.0) / 3.0;
                 counts[lag - 1] += 1;
