@@ -8,6 +8,7 @@ import pytest
 import quatfilt as qf
 import tolerances
 from contract.filters import FILTERS, FRAMES, clip
+from quatfilt.filters.despike import spikes
 
 
 @pytest.mark.parametrize("boundary", ["nearest", "mirror", "linear"])
@@ -41,6 +42,18 @@ def test_one_smallest_spike_per_joint():
     assert (result != q).any(axis=-1).tolist() == [
         [frame == 40, frame == 40, False] for frame in range(FRAMES)
     ]
+
+
+@pytest.mark.parametrize(("fps", "spike"), [(None, True), (120, True), (50, True), (30, False)])
+def test_at_low_frame_rates_a_quick_limb_is_no_spike(fps, spike):
+    """12 degrees there and back within two frames: 380 rad/s² at 30 frames per second, 6000 at 120."""
+    q = clip()
+    q[40, 1] = clips.product(q[40, 1], clips.from_vectors(np.radians([12.0, 0, 0])))
+    options = {} if fps is None else {"fps": fps}
+    assert (qf.despike(q, **options) != q).any() == spike
+    assert (qf.despike(q, smallest="auto", **options) != q).any() == spike
+    assert spikes(q, **options).any() == spike
+    assert (qf.despike(q, smallest=0.105, **options) != q).any()
 
 
 def test_numbers_of_numpy_and_one_bandwidth_per_joint():

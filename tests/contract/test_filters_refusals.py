@@ -55,6 +55,7 @@ WRONG_OPTIONS = [
     ("sigma", [1.0, 2.0], ValueError, "expected a number or one per joint, shape (3,), got (2,)"),
     ("sigma", [1.0, -2.0, 1.0], ValueError, f"[1]{{}}{POSITIVE} and at most 25000, got -2.0"),
     ("sigma", None, TypeError, "expected real numbers, got dtype object"),
+    ("smallest", "tiny", ValueError, "expected 'auto', a number or one per joint, got 'tiny'"),
     ("smallest", -0.1, ValueError, f"{NOT_NEGATIVE}, got -0.1"),
     ("smallest", [0.1, 0.1], ValueError, "expected a number or one per joint, shape (3,), got (2,)"),
     ("smallest", [0.1, 0.1, math.nan], ValueError, f"[2]{{}}{NOT_NEGATIVE}, got nan"),

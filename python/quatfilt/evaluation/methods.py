@@ -155,7 +155,11 @@ ROWS: dict[str, Row] = {
             '`smooth(joints="together")`',
             lambda clips: clips.each(partial(smooth, joints="together")),
         ),
-        _fixed("auto", "`denoise`: despike, then the smoother before", lambda clips: clips.each(denoise)),
+        _fixed(
+            "auto",
+            "`denoise`, which is told the frame rate: despike, then the smoother before",
+            lambda clips: clips.each(lambda q: denoise(q, fps=clips.fps)),
+        ),
     )
 }
 """In the order of the tables."""

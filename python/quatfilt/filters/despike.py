@@ -1,7 +1,7 @@
 """Spikes: samples that leave the motion and come back at once."""
 
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any, Literal, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,13 +14,20 @@ from quatfilt.filters import _spans
 _LONGEST_RADIUS = 1000
 """Frames: a run that lasts longer is no spike at any frame rate."""
 
+_JITTER = 0.105
+"""Radians: recordings of bodies jitter by up to that."""
+
+_ACCELERATION = 500.0
+"""rad/s²: what the joints of people reach in kicks and punches. Half of it times the square of a frame is how far a joint gets out of
+a straight line."""
+
 
 def despike(
     q: ArrayLike,
     *,
     radius: int = 3,
     threshold: PerJoint = 4.0,
-    smallest: PerJoint = 0.105,
+    smallest: PerJoint | Literal["auto"] = "auto",
     confidence: ArrayLike | None = None,
     gaps: _spans.Gaps = "fill",
     max_gap: float | None = None,
@@ -46,8 +53,9 @@ def despike(
         Spikes are shorter than this; and so many neighbours on either side are asked. From 2 to 1000.
     threshold : float or array_like (joints,), default 4.0
         How many times as far as usual a spike is. Smaller finds more.
-    smallest : float or array_like (joints,), radians of rotation, default 0.105
-        Spikes are larger than this. The default is 6°: recordings of bodies jitter by up to that.
+    smallest : float or array_like (joints,), radians of rotation, or "auto", default "auto"
+        Spikes are larger than this. "auto" is 0.105, or 6°: recordings of bodies jitter by up to that. Below 49 frames per second
+        it is ``250 / fps²``: so far a quick limb gets out of a straight line within a frame, 16° at 30.
     confidence : array_like, shape (frames,) or (frames, joints), 0…1, or None, default None
         Samples of confidence 0 are replaced whatever they are, and nothing is judged by them. A confidence in between is
         a factor to the threshold.
@@ -57,7 +65,7 @@ def despike(
     max_gap : float or None, seconds, default None
         The longest gap that is filled; None for any. Longer ones stay missing, and their sides are looked at apart.
     fps : float, hertz, default 1.0
-        Frame rate, for `max_gap`; without it `max_gap` counts frames.
+        Frame rate, for `max_gap` and `smallest`; without it `max_gap` counts frames, and nothing is known of quick limbs.
     scalar_first : bool, default True
         Whether quaternions are ``(w, x, y, z)``; False for SciPy's ``(x, y, z, w)``.
 
@@ -119,16 +127,17 @@ def with_translation(
     *,
     radius: int,
     threshold: PerJoint,
-    smallest: PerJoint,
+    smallest: PerJoint | Literal["auto"],
     confidence: ArrayLike | None,
+    fps: float,
     **missing: Any,
 ) -> tuple[Array, Array | None]:
     """Replace spikes as `despike` does, and those of a translation ``(frames, 3)``, along straight lines.
 
     The translation is judged by itself, with the confidences of the root and without a smallest distance.
     """
-    clip = _spans.prepare(q, confidence=confidence, **missing)
-    limits = _limits(clip, radius, threshold, smallest)
+    clip = _spans.prepare(q, confidence=confidence, fps=fps, **missing)
+    limits = _limits(clip, radius, threshold, smallest, fps)
     result, _ = limits.apply(clip)
     if translation is None:
         return result, None
@@ -144,7 +153,7 @@ def spikes(
     *,
     radius: int = 3,
     threshold: PerJoint = 4.0,
-    smallest: PerJoint = 0.105,
+    smallest: PerJoint | Literal["auto"] = "auto",
     confidence: ArrayLike | None = None,
     max_gap: float | None = None,
     fps: float = 1.0,
@@ -160,7 +169,7 @@ def spikes(
     clip = _spans.prepare(
         q, gaps="fill", max_gap=max_gap, fps=fps, confidence=confidence, scalar_first=scalar_first
     )
-    _, found = _limits(clip, radius, threshold, smallest).apply(clip)
+    _, found = _limits(clip, radius, threshold, smallest, fps).apply(clip)
     return found.reshape(clip.shape[:-1])
 
 
@@ -217,7 +226,12 @@ class _Limits:
         return found
 
 
-def _limits(clip: _spans.Clip, radius: int, threshold: PerJoint, smallest: PerJoint) -> _Limits:
+def _limits(
+    clip: _spans.Clip, radius: int, threshold: PerJoint, smallest: PerJoint | Literal["auto"], fps: float
+) -> _Limits:
+    if isinstance(smallest, str):
+        _validation.known(smallest, "smallest", ("auto",), "'auto', a number or one per joint")
+        smallest = _JITTER if fps <= 1 else max(_JITTER, _ACCELERATION / 2 / fps**2)
     return _Limits(
         _validation.integer(radius, "radius", at_least=2, at_most=_LONGEST_RADIUS),
         _validation.per_joint(threshold, "threshold", clip.rotations.shape[1], above=0),
