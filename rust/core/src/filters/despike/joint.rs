@@ -28,8 +28,7 @@ impl<P: Place> Joint<P> {
     pub(super) fn spikes(&self, interrupt: &Interrupt) -> Result<Vec<usize>, Error> {
         let mut found = Vec::new();
         for _ in 0..LOOKS {
-            interrupt.check()?;
-            let seen = self.look(&found);
+            let seen = self.look(&found, interrupt)?;
             if seen == found {
                 break;
             }
@@ -39,7 +38,7 @@ impl<P: Place> Joint<P> {
     }
 
     /// The frames of the spikes, given those that were found before; in order.
-    fn look(&self, before: &[usize]) -> Vec<usize> {
+    fn look(&self, before: &[usize], interrupt: &Interrupt) -> Result<Vec<usize>, Error> {
         let mut trusted: Vec<bool> = self.trust.iter().map(|&trust| trust > 0.0).collect();
         for &frame in before {
             trusted[frame] = false;
@@ -48,6 +47,7 @@ impl<P: Place> Joint<P> {
         let mut sides = Sides::default();
         let sure = P::nearness_at(self.least(1.0)) * (1.0 - SLACK);
         for length in 1..self.radius {
+            interrupt.check()?;
             for start in 0..(self.path.len() + 1).saturating_sub(length) {
                 let run = start..start + length;
                 let doubt = &self.trust[run.clone()];
@@ -62,14 +62,14 @@ impl<P: Place> Joint<P> {
                 if self.path[a].nearness(*into) <= bound || out.nearness(self.path[b]) <= bound {
                     continue;
                 }
-                if self.is_spike(&run, doubt, &trusted, &mut sides) {
+                if self.is_spike(&run, doubt, &trusted, &mut sides, interrupt)? {
                     found.extend(run);
                 }
             }
         }
         found.sort_unstable();
         found.dedup();
-        found
+        Ok(found)
     }
 
     /// The least deviation of a spike, whatever is around it.
@@ -77,21 +77,31 @@ impl<P: Place> Joint<P> {
         self.smallest.max(self.threshold * doubt * self.usual)
     }
 
-    fn is_spike(&self, run: &Range<usize>, doubt: f64, trusted: &[bool], sides: &mut Sides) -> bool {
-        let Some(away) = self.deviation(run, trusted, sides) else { return false };
+    fn is_spike(
+        &self,
+        run: &Range<usize>,
+        doubt: f64,
+        trusted: &[bool],
+        sides: &mut Sides,
+        interrupt: &Interrupt,
+    ) -> Result<bool, Error> {
+        let Some(away) = self.deviation(run, trusted, sides) else { return Ok(false) };
         if away <= self.least(doubt) || away <= MOTION * self.pace(sides) {
-            return false;
+            return Ok(false);
         }
         let reach = SURROUNDINGS * self.radius;
         let length = run.len();
         let before = run.start.saturating_sub(reach)..(run.start + 1).saturating_sub(length);
         let last = (run.start + reach + 1).min((self.path.len() + 1).saturating_sub(length));
-        let mut around: Vec<f64> = before
-            .chain(run.end..last)
-            .map(|start| start..start + length)
-            .filter(|run| trusted[run.clone()].iter().all(|&trusted| trusted))
-            .filter_map(|run| self.deviation(&run, trusted, sides))
-            .collect();
-        away > self.threshold * doubt * median(&mut around)
+        let mut around = Vec::with_capacity(2 * reach);
+        for start in before.chain(run.end..last) {
+            // With a radius of hundreds of frames the surroundings of one run take a second.
+            interrupt.check()?;
+            let other = start..start + length;
+            if trusted[other.clone()].iter().all(|&trusted| trusted) {
+                around.extend(self.deviation(&other, trusted, sides));
+            }
+        }
+        Ok(away > self.threshold * doubt * median(&mut around))
     }
 }
