@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import quatfilt as qf
 from quatfilt.evaluation.synthetic import walk
+from quatfilt.motion.report import picture
 
 SIGMA = 0.02
 SPIKES = ((40, 3), (90, 5), (91, 7))
@@ -170,6 +171,12 @@ def test_without_joints(tmp_path):
     assert report.joints == ()
     assert str(report)
     report.write(tmp_path / "report.png")
+
+
+def test_the_axis_of_the_jerk_has_no_room_for_rounding():
+    """A joint that does not move has a jerk of its rounding: the others would be dots in a corner."""
+    assert picture._moving([3e3, 4e2, 5e-10, 1e-30, 0.0, math.nan]) == [3e3, 4e2]
+    assert picture._moving([0.0, math.nan]) == []
 
 
 def test_pictures_need_matplotlib(report, tmp_path, monkeypatch):

@@ -33,6 +33,9 @@ _MARGIN = 0.3
 _BELOW = 3.0
 """How far the axis of the jerk goes below the least jerk: joints that do not move at all in the reference have none."""
 
+_LEAST_JERK = 1e-6
+"""Of the largest jerk: below it is the rounding of joints that do not move, and no motion."""
+
 GAP, CLOSE_UP = "#DCE9F5", "#F6EBD9"
 """Pale blue where samples were missing, pale yellow where the close view is."""
 
@@ -163,12 +166,18 @@ def _jerk(axes: Any, report: "Report") -> None:
         for joint in joints
     ]
     _pairs(axes, [joint.name for joint in joints], pairs)
-    positive = [value for values in pairs for value in values[:2] if value > 0]
-    if positive:
+    shown = _moving([value for values in pairs for value in values[:2]])
+    if shown:
         axes.set_xscale("log")
-        axes.set_xlim(min(positive) / _BELOW, max(positive) * _BELOW)
+        axes.set_xlim(min(shown) / _BELOW, max(shown) * _BELOW)
     axes.set_title(title, loc="left", fontsize=9, pad=3)
     axes.set_xlabel(unit)
+
+
+def _moving(jerks: list[float]) -> list[float]:
+    """Return those that a logarithmic axis has room for: joints that stand still have the jerk of their rounding."""
+    least = _LEAST_JERK * max((jerk for jerk in jerks if jerk > 0), default=0.0)
+    return [jerk for jerk in jerks if jerk > least]
 
 
 def _feet(axes: Any, report: "Report") -> None:
