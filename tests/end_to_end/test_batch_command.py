@@ -122,6 +122,18 @@ def test_outputs_are_no_inputs(takes, tmp_path):
     assert len([name for name in tree(inside) if name.startswith("clean")]) == 4
 
 
+def test_files_are_not_cleaned_in_place(takes, tmp_path):
+    """Without a word, an input would look like an output that is there."""
+    inside = tmp_path / "takes"
+    shutil.copytree(takes, inside)
+    before = tree(inside)
+    for force in ([], ["--force"]):
+        done = run("batch", inside, "-o", inside, "--log", tmp_path / "log.jsonl", *force, status=2)
+        assert done.stdout.splitlines()[-1] == "0 written, 0 kept, 3 failed"
+        assert done.stderr.count("this is the input: write to another file") == 3
+    assert tree(inside) == before
+
+
 def test_acclaim_becomes_bvh(data_dir, tmp_path):
     for name in ("07.asf", "07_01.amc", "07_02.amc"):
         shutil.copy(data_dir / "cmu" / "07" / name, tmp_path / name)
