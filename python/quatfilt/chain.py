@@ -112,7 +112,9 @@ def _from(preset: Preset, name: str) -> Step:
 
 def _assigned(steps: Sequence[Step], option: str, value: Any) -> list[tuple[Step, Mapping[str, Any]]]:
     """Return the steps that an option is for, and what each gets."""
-    if isinstance(value, Mapping) and option in FILTERS:
+    if option in FILTERS:
+        if not isinstance(value, Mapping):
+            raise TypeError(f"{option}: expected a dict of options of this step, got {type(value).__name__}")
         own = [step for step in steps if step.name == option]
         if not own:
             raise TypeError(f"{option}: expected one of the steps {_listed(steps)}, got another method")

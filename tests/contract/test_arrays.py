@@ -192,7 +192,7 @@ def test_shapes_that_do_not_broadcast(name):
         (np.zeros((2, 4), object), "expected real numbers, got dtype object"),
         (np.zeros((2, 4), "datetime64[s]"), "expected real numbers, got dtype datetime64[s]"),
         (["1", "0", "0", "0"], "expected real numbers, got dtype <U1"),
-        (None, "expected real numbers, got dtype object"),
+        (None, "expected real numbers, got None"),
     ],
 )
 @pytest.mark.parametrize("name", NAMES)

@@ -121,7 +121,7 @@ def test_options_of_a_step_that_does_not_run():
 
 def test_options_of_a_step_are_a_dict():
     message = refused(TypeError, method="bilateral", bilateral=3)
-    assert message.startswith("bilateral: expected an option of bilateral (")
+    assert message == "bilateral: expected a dict of options of this step, got int"
 
 
 def test_options_that_several_steps_have():

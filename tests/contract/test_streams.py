@@ -71,7 +71,8 @@ def test_arrays_that_are_no_pose(name, shape):
 @every_stream
 def test_what_is_no_number(name, value):
     message = refused(TypeError, STREAMS[name]().push, value)
-    assert message == f"pose: expected real numbers, got dtype {np.asarray(value).dtype}"
+    came = "None" if value is None else f"dtype {np.asarray(value).dtype}"
+    assert message == f"pose: expected real numbers, got {came}"
 
 
 @pytest.mark.parametrize(("scale", "norm"), [(0.5, "0.5"), (2.0, "2"), (1e200, "1e+200")])
@@ -426,7 +427,7 @@ WRONG_OPTIONS = {
         ({"bandwidth": 0}, ValueError, f"bandwidth: {POSITIVE}, got 0"),
         ({"bandwidth": True}, TypeError, f"bandwidth: {POSITIVE}, got bool"),
         ({"bandwidth": [0.1, -1]}, ValueError, f"bandwidth[1]: {POSITIVE}, got -1.0"),
-        ({"bandwidth": None}, TypeError, "bandwidth: expected real numbers, got dtype object"),
+        ({"bandwidth": None}, TypeError, "bandwidth: expected a number or one per joint, got None"),
         (
             {"bandwidth": [[0.1]]},
             ValueError,

@@ -238,7 +238,7 @@ def test_version():
         ),
         (
             ["denoise", "noisy.bvh", "--method", "nonlocal-pose-means", "--bandwidth", "wide"],
-            "bandwidth: expected one of 'auto', got 'wide'",
+            "bandwidth: expected 'auto', a number or one per joint, got 'wide'",
         ),
         (
             ["denoise", "noisy.bvh", "--method", "nonlocal-pose-means", "--search-radius", "0"],

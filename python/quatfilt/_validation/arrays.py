@@ -25,7 +25,8 @@ def floats(value: Any, name: str) -> Array:
     elif array.dtype.kind == "f":
         dtype = np.dtype(np.float32 if array.dtype.itemsize <= 4 else np.float64)
     else:
-        raise TypeError(f"{name}: expected real numbers, got dtype {array.dtype}")
+        came = "None" if value is None else f"dtype {array.dtype}"
+        raise TypeError(f"{name}: expected real numbers, got {came}")
     return np.require(array, dtype, ("C_CONTIGUOUS", "ALIGNED"))
 
 

@@ -26,6 +26,8 @@ def per_joint(
     bounds = {"above": above, "at_least": at_least, "at_most": at_most}
     if np.isscalar(value):
         return np.full(joints, number(value, name, **bounds, infinite=infinite))
+    if value is None:
+        raise TypeError(f"{name}: expected a number or one per joint, got None")
     array = floats(value, name).astype(np.float64)
     if array.ndim == 0:
         return np.full(joints, number(array.item(), name, **bounds, infinite=infinite))

@@ -18,7 +18,8 @@ def mask(value: Any, name: str) -> NDArray[np.float64]:
     if array.ndim != 1 or len(array) % 2 == 0:
         raise ValueError(f"{name}: expected an odd number of weights, shape (2k + 1,), got {array.shape}")
     if not np.isfinite(array).all():
-        raise ValueError(f"{name}: expected finite weights")
+        worst = array[~np.isfinite(array)][0]
+        raise ValueError(f"{name}: expected finite weights, got {worst}")
     largest = np.abs(array).max()
     array = array / (largest or 1)
     reach = np.abs(array) @ np.abs(np.arange(len(array)) - len(array) // 2)

@@ -239,7 +239,9 @@ def _noises(
     """Return the noises of each joint: in radians / frame^1.5 and in radians."""
     joints = clip.rotations.shape[1]
     if isinstance(measurement_noise, str):
-        _validation.choice(measurement_noise, "measurement_noise", ("auto",))
+        _validation.known(
+            measurement_noise, "measurement_noise", ("auto",), "'auto', a number or one per joint"
+        )
         measurement = np.full(joints, _LEAST_NOISE)
         if not clip.unchanged:
             measurement = np.maximum(ops().noise_level(clip.observed).astype(np.float64), _LEAST_NOISE)
@@ -249,7 +251,7 @@ def _noises(
     if not isinstance(process_noise, str):
         process = _validation.per_joint(process_noise, "process_noise", joints, at_least=0)
         return np.clip(process * fps**-1.5, 0, EXTREMES[1]), measurement
-    _validation.choice(process_noise, "process_noise", ("auto",))
+    _validation.known(process_noise, "process_noise", ("auto",), "'auto', a number or one per joint")
     if clip.unchanged:
         return measurement, measurement
     rotations, block = _sample(clip.rotations)

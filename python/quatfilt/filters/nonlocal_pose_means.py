@@ -234,7 +234,7 @@ def _checked(
 ) -> tuple[Any, ...]:
     """Return the options after the bandwidth as the backends take them."""
     if isinstance(bandwidth, str):
-        _validation.choice(bandwidth, "bandwidth", ("auto",))
+        _validation.known(bandwidth, "bandwidth", ("auto",), "'auto', a number or one per joint")
     seen = _validation.choice(chart, "chart", _CHARTS)
     if borrows:
         if seen == "identity":

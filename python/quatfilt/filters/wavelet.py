@@ -139,7 +139,8 @@ def with_translation(
     rule: Rule | None = None
     given = np.empty(0)
     if isinstance(threshold, str):
-        rule = _validation.choice(threshold, "threshold", _RULES)
+        expected = f"one of {', '.join(map(repr, _RULES))}, a number or one per joint"
+        rule = cast("Rule", _validation.known(threshold, "threshold", _RULES, expected))
     else:
         given = _validation.per_joint(threshold, "threshold", joints, at_least=0)
     moved = None if translation is None else translation.astype(clip.rotations.dtype)

@@ -36,8 +36,9 @@ def strength(
     bounds = {"at_least": 0.0} if zero else {"above": 0.0}
     if np.isscalar(value):
         return _validation.number(value, name, **bounds, infinite=infinite)
-    array = _validation.floats(value, name).copy()
-    return _validation.per_joint(array, name, array.size, **bounds, infinite=infinite)
+    array = None if value is None else _validation.floats(value, name).copy()
+    joints = 0 if array is None else array.size
+    return _validation.per_joint(array, name, joints, **bounds, infinite=infinite)
 
 
 def not_automatic(value: Any, name: str, instead: str) -> None:
