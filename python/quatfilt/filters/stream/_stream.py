@@ -30,7 +30,7 @@ def checked_boundary(boundary: Boundary, latency: int) -> Boundary:
 
 
 def strength(
-    value: float | ArrayLike, name: str, *, zero: bool = False, infinite: bool = False
+    value: float | ArrayLike | None, name: str, *, zero: bool = False, infinite: bool = False
 ) -> float | Array:
     """Return a checked number above or from `zero`, or a copy of one per joint; the first pose tells whether it fits."""
     bounds = {"at_least": 0.0} if zero else {"above": 0.0}
