@@ -79,6 +79,17 @@ def test_constant_rotations_on_either_side_go_through(backend, name, seed, weigh
     assert clips.angles(moved, clips.product(a, clips.product(result, b))).max() < tolerances.FLOAT64
 
 
+@pytest.mark.parametrize("name", REACH)
+@given(seed=seeds, weighted=st.booleans())
+def test_inverse_rotations_give_the_inverse(backend, name, seed, weighted):
+    """It does not matter whether the body is seen from the world or the world from the body. The principal axes of a wavelet's
+    are those of the body."""
+    q, rng = sample(seed)
+    trust = clips.confidences(rng, *q.shape[:2]) if weighted else None
+    result, inverse = (FILTERS[name](backend, x, None, trust)[0] for x in (q, q * [1, -1, -1, -1]))
+    assert clips.angles(inverse * [1, -1, -1, -1], result).max() < tolerances.FLOAT64
+
+
 @every_filter
 @given(seed=seeds, dtype=dtypes)
 def test_signs_do_not_matter(backend, name, seed, dtype):

@@ -34,7 +34,8 @@ def gaussian(
         R_0 = 0,    R_{t+1} = R_t + 2·log(r_t⁻¹ r_{t+1}),    y_t = R_t + 2·log(r_t⁻¹ q_t)
         F(q)_t = r_t·exp((Σ_j m_j y_{t+j} − R_t) / 2)
 
-    so that a joint may turn as far as it likes, and about one fixed axis the unrolled angles are averaged.
+    so that a joint may turn as far as it likes, and about one fixed axis the unrolled angles are averaged. The vectors are seen from
+    a frame that is carried along the path by parallel transport: small rotations are averaged as their rotation vectors.
 
     Parameters
     ----------

@@ -76,8 +76,8 @@ def savgol(
     Notes
     -----
     The angular velocity is that of a path in the frame that it carries along, ``2·log(q_t⁻¹ q_{t+1})·fps`` in the limit. It
-    is taken of the smoothed rotations. A steady turn about a fixed axis has it exactly; where the axis turns, chords stand for
-    arcs, and ``|ω × ω'| / (12·fps²)`` is lost.
+    is taken of the smoothed rotations. A steady turn about a fixed axis has it exactly; where the axis turns, the velocity lacks
+    what falls with the fourth power of `fps`, and the acceleration what falls with its square.
 
     Cost: ``frames · joints · window_length``.
 

@@ -37,8 +37,8 @@ def wavelet(
 ) -> Array:
     """Remove noise from rotations by shrinking their wavelet coefficients.
 
-    Each joint's vectors about a smooth reference path, see `gaussian`, are turned to their principal axes and decomposed by
-    PyWavelets; every detail moves towards 0 by a threshold ``t``, ``sign(d)·max(|d| − t, 0)``, and the rest is put together
+    Each joint's vectors about a smooth reference path, see `gaussian`, but in the frame of the body, are turned to their principal
+    axes and decomposed by PyWavelets; every detail moves towards 0 by a threshold ``t``, ``sign(d)·max(|d| − t, 0)``, and the rest is put together
     again. PyWavelets is an extra: ``pip install 'quatfilt[wavelet]'``.
 
     Parameters

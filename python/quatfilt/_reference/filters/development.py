@@ -10,7 +10,15 @@ body. A linear filter `F` for numbers that keeps constants, applied to the colum
 
     `r_t · exp((F(y)_t − R_t) / 2)`.
 
-With `r = q` this is Lee and Shin's construction. There the commutators of the noise add up from frame to frame; about a
+The body's frame turns, and with it the vectors of later frames. Filters add vectors of many frames, so :func:`filtered` carries
+the frame along by parallel transport, which turns it half as far as the body,
+
+    `h_0 = 1`,    `h_{t+1} = h_t · (r_t⁻¹ r_{t+1})^½`,
+
+and has `h ω h⁻¹` for each vector `ω` above. Then the filter of small rotations is the filter of rotation vectors, up to products
+of three angles; and the filter of the inverse is the inverse of the filter's.
+
+With `r = q` and `h = 1` this is Lee and Shin's construction. There the commutators of the noise add up from frame to frame; about a
 smooth path they do not. Nothing has to stay within one chart, so joints may turn as far as they like; and about one fixed
 axis `y` are the unrolled angles.
 """
@@ -24,8 +32,17 @@ from numpy.typing import NDArray
 from quatfilt._reference._arrays import Reals
 from quatfilt._reference.filters.boundary import Boundary, extend_by_index, extend_vectors
 from quatfilt._reference.filters.nonlocal_pose_means.nonlocal_pose_means import in_hemisphere_of
+from quatfilt._reference.motion.skeleton import rotate
 from quatfilt._reference.noise.coherence import coherence
-from quatfilt._reference.rotations.quaternion import between, exp, log_short, multiply, norm, normalize
+from quatfilt._reference.rotations.quaternion import (
+    between,
+    conjugate,
+    exp,
+    log_short,
+    multiply,
+    norm,
+    normalize,
+)
 
 SHORTEST_MEAN = 0.1
 """Length of an average of unit quaternions below which its direction is chance: the frames turn right round within the
@@ -77,6 +94,27 @@ def developed_about(reference: Reals, path: Reals) -> tuple[Reals, Reals, Reals]
     development = np.zeros((*reference.shape[:2], 3))
     development[1:] = np.cumsum(turns, axis=0)
     return reference, development, development + 2 * log_short(between(reference, path))
+
+
+def carried_about(reference: Reals, path: Reals) -> tuple[Reals, Reals, Reals]:
+    """Roll a path out about another one in the frame that is carried along, both `(frames, joints, 4)`.
+
+    Returns
+    -------
+    frame : array (frames, joints, 4)
+        `h`: from the frame of the body to the one that is carried.
+    development, vectors : array (frames, joints, 3), radians
+        `R` and `y`.
+    """
+    turns = 2 * log_short(between(reference[:-1], reference[1:]))
+    frame = np.zeros(reference.shape)
+    frame[:, :, 0] = 1
+    for t in range(1, len(reference)):
+        frame[t] = normalize(multiply(frame[t - 1], exp(turns[t - 1] / 4)))
+    development = np.zeros((*reference.shape[:2], 3))
+    development[1:] = np.cumsum(rotate(frame[:-1], turns), axis=0)
+    way = 2 * log_short(between(reference, path))
+    return frame, development, development + rotate(frame, way)
 
 
 def undevelop(q: Reals, reference: Reals, development: Reals, vectors: Reals) -> Reals:
@@ -225,15 +263,18 @@ def filtered(
     if frames < 2 or joints == 0:
         return normalize(q), None if translation is None else translation.copy()
     trust = None if confidence is None else confidence.astype(np.float64)
-    reference, development, vectors = develop(q, confidence, reference_sigma)
+    path = aligned(normalize(q.astype(np.float64)), confidence, np.ones(joints))
+    reference = reference_path(path, confidence, reference_sigma)
+    frame, development, vectors = carried_about(reference, path)
     moved = np.empty_like(vectors)
     for joint in range(joints):
         own = None if trust is None else trust[:, joint]
         moved[:, joint] = smooth(Columns(vectors[:, joint], development[:, joint], own), joint)
-    rotations = undevelop(q, reference, development, moved)
+    beside = rotate(conjugate(frame), moved - development)
+    rotations = undevelop(q, reference, np.zeros_like(beside), beside)
     if translation is None:
         return rotations, None
-    path = translation.astype(np.float64)
+    positions = translation.astype(np.float64)
     own = None if trust is None else trust[:, 0]
-    mean = weighted_mean(path, own, gaussian_mask(reference_sigma[0]), "mirror")
-    return rotations, smooth(Columns(path, mean, own), 0).astype(translation.dtype)
+    mean = weighted_mean(positions, own, gaussian_mask(reference_sigma[0]), "mirror")
+    return rotations, smooth(Columns(positions, mean, own), 0).astype(translation.dtype)

@@ -6,12 +6,13 @@ from quatfilt._reference._arrays import Reals
 from quatfilt._reference.filters.development import (
     Columns,
     aligned,
-    develop,
-    developed_about,
+    carried_about,
     filtered,
+    reference_path,
     undevelop,
 )
-from quatfilt._reference.rotations.quaternion import normalize
+from quatfilt._reference.motion.skeleton import rotate
+from quatfilt._reference.rotations.quaternion import conjugate, normalize
 
 
 def savgol(
@@ -72,11 +73,14 @@ def savgol_derivative(
     array (frames, joints, 3), rad/s or rad/s²
     """
     path = aligned(normalize(q.astype(np.float64)), confidence, np.ones(q.shape[1]))
-    reference, development, vectors = develop(q, confidence, reference_sigma)
+    reference = reference_path(path, confidence, reference_sigma)
+    frame, development, vectors = carried_about(reference, path)
     moved = fitted_joints(development, vectors, confidence, fit, values)
-    smooth = undevelop(path, reference, development, moved)
-    _, development, vectors = developed_about(smooth, path)
-    return fitted_joints(development, vectors, confidence, fit, derivatives).astype(q.dtype)
+    beside = rotate(conjugate(frame), moved - development)
+    smooth = undevelop(path, reference, np.zeros_like(beside), beside)
+    frame, development, vectors = carried_about(smooth, path)
+    derivative = fitted_joints(development, vectors, confidence, fit, derivatives)
+    return rotate(conjugate(frame), derivative).astype(q.dtype)
 
 
 def fitted_joints(

@@ -64,7 +64,7 @@ def forward_kinematics_moving(
 
 
 def rotate(q: Reals, x: Reals) -> Reals:
-    """Turn a vector by unit quaternions: `q x q⁻¹ = x + 2w (v × x) + 2 v × (v × x)` for `q = (w, v)`; `(n, 3)`."""
-    w, v = q[:, :1], q[:, 1:]
+    """Turn a vector by unit quaternions: `q x q⁻¹ = x + 2w (v × x) + 2 v × (v × x)` for `q = (w, v)`; `(..., 3)`."""
+    w, v = q[..., :1], q[..., 1:]
     across = np.cross(v, x)
     return x + 2 * w * across + 2 * np.cross(v, across)

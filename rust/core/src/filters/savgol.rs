@@ -48,6 +48,7 @@ impl Savgol {
         let results = input.each_joint(
             |_| 0.0,
             3,
+            true,
             2 * self.nanoseconds(),
             interrupt,
             |joint, mut path, spare, rows| {
@@ -56,8 +57,9 @@ impl Savgol {
                 path.roll_out();
                 derivative.smooth(joint, path.columns(), spare, interrupt)?;
                 for (frame, row) in rows.chunks_exact_mut(3).enumerate() {
-                    for (value, column) in row.iter_mut().zip(&path.vectors) {
-                        *value = T::from_f64(column[frame]);
+                    let vector = path.vectors.each_ref().map(|column| column[frame]);
+                    for (value, number) in row.iter_mut().zip(path.of_body(frame, vector)) {
+                        *value = T::from_f64(number);
                     }
                 }
                 Ok(())

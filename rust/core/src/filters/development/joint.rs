@@ -3,7 +3,7 @@
 use super::super::columns::{BLOCK, Mask};
 use crate::clip::Planes;
 use crate::parallel::Interrupt;
-use crate::rotations::quaternion::{between, dot, exp_one, log_short, product};
+use crate::rotations::quaternion::{between, conjugate_one, dot, exp_one, log_short, product, rotate, unit};
 use crate::simd::multiversion;
 use crate::window::Boundary;
 use crate::{Error, Real};
@@ -21,6 +21,10 @@ pub(in crate::filters) struct Joint<'a> {
     pub(in crate::filters) samples: [&'a [f64]; 4],
     /// The unit quaternions `r`.
     pub(in crate::filters) reference: [&'a mut [f64]; 4],
+    /// `h`, unit quaternions: from the frame of the body to the one that `R` and `y` are seen in.
+    pub(in crate::filters) frame: [&'a mut [f64]; 4],
+    /// Whether the frame is carried along the reference path; else it is that of the body.
+    pub(in crate::filters) carried: bool,
     /// `R`, radians.
     pub(in crate::filters) development: [&'a mut [f64]; 3],
     /// `y`, radians.
@@ -61,19 +65,24 @@ impl<'a> Joint<'a> {
         samples: [&'a [f64]; 4],
         trust: Option<&'a [f64]>,
         frames: usize,
-        mask: &Mask,
+        (mask, carried): (&Mask, bool),
         (planes, spare): (&'a mut Planes<f64>, &mut Planes<f64>),
         interrupt: &Interrupt,
     ) -> Result<Self, Error> {
-        planes.reshape(10, frames.next_multiple_of(BLOCK));
-        let [w, x, y, z, a, b, c, vectors @ ..] = planes.rows_mut::<10>(0);
+        planes.reshape(14, frames.next_multiple_of(BLOCK));
+        let [w, x, y, z, one, i, j, k, a, b, c, vectors @ ..] = planes.rows_mut::<14>(0);
+        one.fill(1.0);
+        for zero in [&mut *i, &mut *j, &mut *k] {
+            zero.fill(0.0);
+        }
         let mut reference = [w, x, y, z];
         for (mean, samples) in reference.iter_mut().zip(samples) {
             mean.copy_from_slice(samples);
         }
         mask.means(&mut reference, trust, (frames, Boundary::Mirror), spare, interrupt)?;
         make_unit(reference.each_mut().map(|plane| &mut **plane), samples, SHORTEST_MEAN);
-        let mut joint = Self { frames, samples, reference, development: [a, b, c], vectors, trust };
+        let (frame, development) = ([one, i, j, k], [a, b, c]);
+        let mut joint = Self { frames, samples, reference, frame, carried, development, vectors, trust };
         joint.roll_out();
         Ok(joint)
     }
@@ -83,9 +92,21 @@ impl<'a> Joint<'a> {
         let reference = self.reference.each_ref().map(|plane| &**plane);
         let mut development = self.development.each_mut().map(|plane| &mut **plane);
         turns(reference, development.each_mut().map(|plane| &mut plane[1..]));
+        if self.carried {
+            halves(reference, self.frame.each_mut().map(|plane| &mut plane[1..]));
+            carry(&mut self.frame, self.frames);
+            let frame = self.frame.each_ref().map(|plane| &**plane);
+            seen(frame, development.each_mut().map(|plane| &mut plane[1..]));
+        }
         add_up(&mut development, self.frames);
         let vectors = self.vectors.each_mut().map(|plane| &mut **plane);
-        beside(reference, self.samples, development.each_ref().map(|plane| &**plane), vectors);
+        let frame = self.frame.each_ref().map(|plane| &**plane);
+        beside(reference, self.samples, frame, development.each_ref().map(|plane| &**plane), vectors);
+    }
+
+    /// A vector of a frame as the body sees it.
+    pub(in crate::filters) fn of_body(&self, frame: usize, vector: [f64; 3]) -> [f64; 3] {
+        rotate(conjugate_one(self.frame.each_ref().map(|plane| plane[frame])), vector)
     }
 
     /// What a filter for numbers is applied to.
@@ -101,6 +122,7 @@ impl<'a> Joint<'a> {
     /// Moves the reference path to where the vectors are.
     pub(in crate::filters) fn follow_vectors(&mut self) {
         follow(
+            self.frame.each_ref().map(|plane| &**plane),
             self.development.each_ref().map(|plane| &**plane),
             self.vectors.each_ref().map(|plane| &**plane),
             self.reference.each_mut().map(|plane| &mut **plane),
@@ -145,6 +167,63 @@ multiversion! {
     }
 }
 
+multiversion! {
+    /// Halves of the turns from each frame to the next, the shorter way, as unit quaternions.
+    fn halves<T: Real>(q: [&[T]; 4], out: [&mut [T]; 4]) {
+        let n = out[0].len();
+        let here = q.map(|plane| &plane[..n]);
+        let next = q.map(|plane| &plane[1..=n]);
+        let [w, x, y, z] = out.map(|plane| &mut plane[..n]);
+        for i in 0..n {
+            let a = [here[0][i], here[1][i], here[2][i], here[3][i]];
+            let b = [next[0][i], next[1][i], next[2][i], next[3][i]];
+            let turn = between(a, b);
+            let sign = T::ONE.copysign(turn[0]);
+            let half = unit([turn[0].abs() + T::ONE, sign * turn[1], sign * turn[2], sign * turn[3]]);
+            w[i] = half[0];
+            x[i] = half[1];
+            y[i] = half[2];
+            z[i] = half[3];
+        }
+    }
+}
+
+/// Products of the halves of the turns up to each frame, in place: the frame of the body, carried along by parallel transport,
+/// turns half as far.
+fn carry(halves: &mut [&mut [f64]; 4], frames: usize) {
+    let [w, x, y, z] = halves.each_mut().map(|plane| &mut plane[..frames]);
+    let mut here = [1.0, 0.0, 0.0, 0.0];
+    w[0] = 1.0;
+    x[0] = 0.0;
+    y[0] = 0.0;
+    z[0] = 0.0;
+    for i in 1..frames {
+        let next = product(here, [w[i], x[i], y[i], z[i]]);
+        // Newton's step to the length 1: what rounding took from it does not add up, and no root is waited for.
+        let scale = 1.5 - 0.5 * dot(next, next);
+        here = next.map(|x| scale * x);
+        w[i] = here[0];
+        x[i] = here[1];
+        y[i] = here[2];
+        z[i] = here[3];
+    }
+}
+
+multiversion! {
+    /// Vectors as they are seen from other frames, in place.
+    fn seen<T: Real>(frame: [&[T]; 4], vectors: [&mut [T]; 3]) {
+        let n = vectors[0].len();
+        let frame = frame.map(|plane| &plane[..n]);
+        let [x, y, z] = vectors.map(|plane| &mut plane[..n]);
+        for i in 0..n {
+            let vector = rotate([frame[0][i], frame[1][i], frame[2][i], frame[3][i]], [x[i], y[i], z[i]]);
+            x[i] = vector[0];
+            y[i] = vector[1];
+            z[i] = vector[2];
+        }
+    }
+}
+
 /// Sums of the turns from frame to frame, in place; the first frame has none.
 fn add_up(turns: &mut [&mut [f64]; 3], frames: usize) {
     let [x, y, z] = turns.each_mut().map(|plane| &mut plane[..frames]);
@@ -162,15 +241,23 @@ fn add_up(turns: &mut [&mut [f64]; 3], frames: usize) {
 
 multiversion! {
     /// The samples as vectors beside the development of the reference path.
-    fn beside<T: Real>(reference: [&[T]; 4], samples: [&[T]; 4], development: [&[T]; 3], out: [&mut [T]; 3]) {
+    fn beside<T: Real>(
+        reference: [&[T]; 4],
+        samples: [&[T]; 4],
+        frame: [&[T]; 4],
+        development: [&[T]; 3],
+        out: [&mut [T]; 3],
+    ) {
         let n = out[0].len();
+        let frame = frame.map(|plane| &plane[..n]);
         let (reference, samples) = (reference.map(|plane| &plane[..n]), samples.map(|plane| &plane[..n]));
         let development = development.map(|plane| &plane[..n]);
         let [x, y, z] = out.map(|plane| &mut plane[..n]);
         for i in 0..n {
             let a = [reference[0][i], reference[1][i], reference[2][i], reference[3][i]];
             let b = [samples[0][i], samples[1][i], samples[2][i], samples[3][i]];
-            let way = log_short(between(a, b));
+            let seen_from = [frame[0][i], frame[1][i], frame[2][i], frame[3][i]];
+            let way = rotate(seen_from, log_short(between(a, b)));
             x[i] = development[0][i] + T::TWO * way[0];
             y[i] = development[1][i] + T::TWO * way[1];
             z[i] = development[2][i] + T::TWO * way[2];
@@ -180,12 +267,15 @@ multiversion! {
 
 multiversion! {
     /// Moves a path by half of what its vectors differ from its development.
-    fn follow<T: Real>(development: [&[T]; 3], vectors: [&[T]; 3], path: [&mut [T]; 4]) {
+    fn follow<T: Real>(frame: [&[T]; 4], development: [&[T]; 3], vectors: [&[T]; 3], path: [&mut [T]; 4]) {
         let n = path[0].len();
+        let frame = frame.map(|plane| &plane[..n]);
         let (development, vectors) = (development.map(|plane| &plane[..n]), vectors.map(|plane| &plane[..n]));
         let [w, x, y, z] = path.map(|plane| &mut plane[..n]);
         for i in 0..n {
             let half = std::array::from_fn::<T, 3, _>(|c| (vectors[c][i] - development[c][i]) * T::HALF);
+            let body = conjugate_one([frame[0][i], frame[1][i], frame[2][i], frame[3][i]]);
+            let half = rotate(body, half);
             let one = product([w[i], x[i], y[i], z[i]], exp_one(half));
             w[i] = one[0];
             x[i] = one[1];

@@ -8,7 +8,14 @@
 //! r_t exp((F(y)_t − R_t) / 2)                             what a filter F for numbers makes of them
 //! ```
 //!
-//! With `r = q` this is Lee and Shin's construction; about a smooth path the commutators of the noise do not add up.
+//! All these vectors are seen from the frame of the body, or from one that is carried along the path by parallel transport, which
+//! turns it half as far:
+//!
+//! ```text
+//! h_0 = 1,     h_{t+1} = h_t (r_t⁻¹ r_{t+1})^½            and h ω h⁻¹ for each vector ω above
+//! ```
+//!
+//! With `r = q` and `h = 1` this is Lee and Shin's construction; about a smooth path the commutators of the noise do not add up.
 //!
 //! Each joint is worked through over the whole clip, in float64; a task is a group of joints side by side in memory.
 
@@ -55,6 +62,12 @@ pub trait Smooth: Sync {
     /// reference path takes the mean of more frames.
     fn noise(&self, _joint: usize) -> f64 {
         0.0
+    }
+
+    /// Whether the vectors are seen from the frame that is carried along: then small rotations are filtered as their vectors, up
+    /// to products of three angles. The axes of a body that turns are at rest in its own frame alone.
+    fn carried(&self) -> bool {
+        true
     }
 
     /// How often the rotations are filtered, each time about the result of the time before.
@@ -122,12 +135,13 @@ impl<T: Real> Input<'_, T> {
         self.confidence.map_or(Ok(()), |trust| check_length("confidence", samples, trust.len()))
     }
 
-    /// Develops each joint, which has so much noise, and lets `work` write what it makes of it: `width` numbers for each frame. The
-    /// results stand one joint after the other.
+    /// Develops each joint, which has so much noise, in a frame that is `carried` along or in that of the body, and lets `work` write
+    /// what it makes of it: `width` numbers for each frame. The results stand one joint after the other.
     pub(super) fn each_joint<W: Real>(
         &self,
         noise: impl Fn(usize) -> f64,
         width: usize,
+        carried: bool,
         nanoseconds: usize,
         interrupt: &Interrupt,
         work: impl Fn(usize, Joint<'_>, &mut Planes<f64>, &mut [W]) -> Result<(), Error> + Sync + Send,
@@ -152,8 +166,8 @@ impl<T: Real> Input<'_, T> {
                 interrupt.check()?;
                 let [w, x, y, z, trust] = samples.rows_mut(i * align::ROWS);
                 let trust = self.confidence.map(|_| &*trust);
-                let (mask, memory) = (&masks[first + i], (&mut *joint, &mut *spare));
-                let path = Joint::develop([w, x, y, z], trust, frames, mask, memory, interrupt)?;
+                let (how, memory) = ((&masks[first + i], carried), (&mut *joint, &mut *spare));
+                let path = Joint::develop([w, x, y, z], trust, frames, how, memory, interrupt)?;
                 work(first + i, path, spare, results)?;
             }
             if let Ok(mut kept) = kept.lock() {
@@ -199,6 +213,7 @@ impl<T: Real> Input<'_, T> {
         let results = self.each_joint(
             |joint| filter.noise(joint),
             4,
+            filter.carried(),
             filter.nanoseconds(),
             interrupt,
             |joint, mut path, spare, rows| {
@@ -302,6 +317,7 @@ pub fn develop<T: Real>(
     let results = input.each_joint(
         |_| 0.0,
         WIDTH,
+        false,
         0,
         interrupt,
         |_, path, _, rows: &mut [f64]| {

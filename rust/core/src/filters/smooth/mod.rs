@@ -81,6 +81,10 @@ impl Smooth for Smoother {
         400
     }
 
+    fn carried(&self) -> bool {
+        false
+    }
+
     fn check(&self, frames: usize, joints: usize) -> Result<(), Error> {
         if let Some(candidates) = &self.candidates {
             check_length("frames", candidates.frames(), frames)?;
