@@ -64,9 +64,10 @@ def nearest_segments(
 
     Notes
     -----
-    Cost: at most ``queries · poses · m · dims``. Up to three queries read all poses once; more of them measure one segment in
-    sixteen first, and then the passages that may hold one of the nearest: a few hundredths of real motions. Memory:
-    ``queries · poses / 8`` bytes at most. Distances in float32 are exact to 1e-6 of themselves.
+    Cost: at most ``queries · poses · m · dims``. Queries of fewer than ten poses together measure all segments, and read the poses once;
+    more of them make an index first, that of `PoseSearch`, with which a query of real motions takes a tenth of the time or less. Memory
+    of the index: 76 bytes for each pose in float32. Distances in float32 are exact to 1e-6 of themselves; numbers that differ by less
+    than 1e-19 (float64: 1.5e-154) count as equal.
 
     Examples
     --------

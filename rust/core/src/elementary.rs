@@ -87,6 +87,7 @@ macro_rules! real_basics {
 impl Real for f64 {
     real_basics!(f64);
     const TINY_SQUARE: Self = 1e-200;
+    const LEAST_SQUARED: Self = 1.491_668_146_240_041_3e-154; // 2⁻⁵¹¹
     const SIN_COS_LIMIT: Self = 5e5;
     const EXP_LIMIT: Self = 709.0;
 
@@ -242,6 +243,7 @@ impl Real for f64 {
 impl Real for f32 {
     real_basics!(f32);
     const TINY_SQUARE: Self = 1e-24;
+    const LEAST_SQUARED: Self = 1.084_202_172_485_504_4e-19; // 2⁻⁶³
     const SIN_COS_LIMIT: Self = 8000.0;
     const EXP_LIMIT: Self = 88.0;
 

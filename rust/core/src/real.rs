@@ -44,6 +44,8 @@ pub trait Real:
     /// Added to the square of a sine or an angle it keeps `φ / sin φ` from 0/0: the ratio is even and smooth, so that
     /// moving both by so little does not show.
     const TINY_SQUARE: Self;
+    /// The least number whose square has all its digits. Processors take many times as long for squares of lesser ones.
+    const LEAST_SQUARED: Self;
     /// The largest argument that [`Real::sin_cos`] reduces exactly enough.
     const SIN_COS_LIMIT: Self;
     /// The largest argument of [`Real::exp`].

@@ -64,13 +64,35 @@ def test_nearest_segments(seed, poses, dims, length, number, roughness, dtype):
     assert (features.tobytes(), queries.tobytes()) == before, "the input was written"
 
 
-@pytest.mark.parametrize("number", [1, 5])
-def test_many_poses(number):
+# One measures everything, and so do a few poses; more make an index first.
+@pytest.mark.parametrize(("number", "length"), [(1, 1), (1, 3), (7, 1), (5, 3), (24, 1), (1, 17)])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_many_poses(number, length, dtype):
     rng = np.random.default_rng(0)
-    features = walks(rng, 40_000, 30, 0.0, np.float32)
+    features = walks(rng, 40_000, 30, 0.0, dtype)
     starts = borders(rng, 40_000)
-    queries = features[rng.integers(0, 39_000, (number, 1)) + np.arange(3)] + np.float32(0.01)
-    arguments = features, starts, queries, 64, 1, None
+    queries = features[rng.integers(0, 39_000, (number, 1)) + np.arange(length)] + dtype(0.01)
+    features[rng.random(40_000) < 0.01] = np.nan
+    excluded = np.sort(rng.integers(0, 40_000, (number, 2)))
+    arguments = features, starts, queries, 64, 1, excluded
+    agree(
+        _core.nearest_segments(*arguments),
+        _reference.nearest_segments(*arguments),
+        features,
+        lambda i: queries[i],
+    )
+
+
+@pytest.mark.parametrize("number", [1, 30])
+@pytest.mark.parametrize(("dtype", "tiny"), [(np.float32, 1e-22), (np.float64, 1e-160)])
+def test_numbers_whose_squares_lose_digits(number, dtype, tiny):
+    rng = np.random.default_rng(0)
+    features = walks(rng, 20_000, 40, 0.0, dtype)
+    # What logarithms of rotations leave that never change.
+    features[:, 5:20] = tiny * rng.standard_normal((20_000, 15))
+    features[:, 20:] = 0
+    queries = features[rng.integers(0, 20_000, number), None] + dtype(0.01)
+    arguments = features, np.array([0, 20_000]), queries, 16, 0, None
     agree(
         _core.nearest_segments(*arguments),
         _reference.nearest_segments(*arguments),

@@ -19,6 +19,9 @@ const WIDTH: usize = LANES;
 /// Segments of a passage: more of them are farther apart, fewer save less.
 pub(super) const PASSAGE: usize = 8;
 
+/// Poses that are measured at a time.
+const STRIP: usize = 64;
+
 /// Poses of a task.
 const TASK: usize = 4096;
 
@@ -46,7 +49,7 @@ impl<T: Real> Block<T> {
 /// Shadows of all poses, and passages of all candidates: 76 bytes for each pose in float32.
 #[derive(Debug, Clone)]
 pub struct Index<T> {
-    /// Directions, `(WIDTH, dims)`.
+    /// Directions, `(dims, WIDTH)`.
     basis: Vec<T>,
     /// Shadows, `(poses, WIDTH)`.
     shadows: Vec<T>,
@@ -68,7 +71,13 @@ impl<T: Real> Index<T> {
     /// [`Error::Interrupted`].
     pub fn new(segments: &Segments<'_, T>, interrupt: &Interrupt) -> Result<Self, Error> {
         let (dims, poses, length) = (segments.dims(), segments.poses(), segments.length());
-        let basis: Vec<T> = directions(segments, WIDTH).into_iter().map(T::from_f64).collect();
+        let directions = directions(segments, WIDTH);
+        // What is far below the roundings of the others is nothing: products of tiny numbers take many times as long.
+        let tiny = (T::EPSILON * T::EPSILON).to_f64();
+        let basis: Vec<T> = (0..dims * WIDTH)
+            .map(|i| directions[i % WIDTH * dims + i / WIDTH])
+            .map(|x| if x.abs() < tiny { T::ZERO } else { T::from_f64(x) })
+            .collect();
         let mut shadows = vec![T::ZERO; poses * WIDTH];
         let tasks: Vec<_> =
             segments.features().chunks(TASK * dims).zip(shadows.chunks_mut(TASK * WIDTH)).collect();
@@ -218,7 +227,7 @@ impl<T: Real> Index<T> {
 
     /// What two queries are not farther apart than.
     pub(super) fn distance(&self, query: &Query<T>, other: &[T]) -> T {
-        query.square(other).sqrt() * (T::ONE + self.rounding)
+        query.square(other).sqrt() * (T::ONE + self.rounding) + T::TINY_SQUARE.sqrt()
     }
 
     /// The squared distances of the courses of the middles of a tile of passages to that of a query.
@@ -296,12 +305,16 @@ fn write_course<T: Real>(shadows: &[T], course: &mut [T]) {
 
 /// Writes the shadows of poses, and says how long the longest pose is.
 fn shade<T: Real>(basis: &[T], poses: &[T], dims: usize, shadows: &mut [T]) -> T {
+    let origin = Probe::new(&vec![T::ZERO; dims]);
+    let mut squares = [T::ZERO; STRIP];
     let mut largest = T::ZERO;
-    for (pose, shadow) in poses.chunks_exact(dims).zip(shadows.chunks_exact_mut(WIDTH)) {
-        kernels::products(basis, pose, shadow);
-        let square = pose.iter().fold(T::ZERO, |sum, x| sum + *x * *x);
-        if square > largest {
-            largest = square;
+    for (poses, shadows) in poses.chunks(STRIP * dims).zip(shadows.chunks_mut(STRIP * WIDTH)) {
+        let squares = &mut squares[..poses.len() / dims];
+        // First what reads the poses one after the other: memory is slower with those that read several side by side.
+        kernels::in_sequence(poses, dims, &origin, squares);
+        kernels::products(basis, poses, shadows);
+        for &square in &*squares {
+            largest = if square > largest { square } else { largest };
         }
     }
     largest.sqrt()

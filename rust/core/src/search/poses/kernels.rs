@@ -10,6 +10,9 @@ use crate::simd::multiversion;
 /// Sums that grow side by side.
 pub(super) const LANES: usize = 16;
 
+/// Poses whose products grow side by side.
+const POSES: usize = 4;
+
 /// Passages whose middles lie side by side.
 pub(super) const TILE: usize = 64;
 
@@ -17,17 +20,22 @@ pub(super) const TILE: usize = 64;
 #[derive(Debug, Clone)]
 pub struct Probe<T> {
     values: Vec<T>,
-    /// 1 for those of the last [`LANES`] numbers that lie beyond the last whole group of lanes, else 0.
-    rest: [T; LANES],
-    /// Whether there is such a rest.
-    ragged: bool,
+    /// The whole groups of its numbers; then its last [`LANES`] numbers, or all of them and zeros; then 1 for those of the last ones
+    /// that lie beyond the last whole group, else 0.
+    groups: Vec<Group<T>>,
 }
+
+/// Numbers that are read at once: across two cache lines it would take twice as long. Only for the heap: an object of Python that
+/// holds one would not lie as it must.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+struct Group<T>([T; LANES]);
 
 impl<T: Real> Probe<T> {
     /// A copy of a segment.
     #[must_use]
     pub fn new(values: &[T]) -> Self {
-        let mut probe = Self { values: Vec::new(), rest: [T::ZERO; LANES], ragged: false };
+        let mut probe = Self { values: Vec::new(), groups: Vec::new() };
         probe.set(values);
         probe
     }
@@ -36,11 +44,12 @@ impl<T: Real> Probe<T> {
     pub fn set(&mut self, values: &[T]) {
         self.values.clear();
         self.values.extend_from_slice(values);
-        self.ragged = !values.len().is_multiple_of(LANES);
-        let counted = LANES - values.len() % LANES;
-        for (lane, rest) in self.rest.iter_mut().enumerate() {
-            *rest = if lane < counted { T::ZERO } else { T::ONE };
-        }
+        self.groups.clear();
+        self.groups.extend(values.as_chunks::<LANES>().0.iter().map(|&group| Group(group)));
+        let last = values.last_chunk::<LANES>().copied().unwrap_or_else(|| padded(values));
+        let counted = if values.len() < LANES { 0 } else { LANES - values.len() % LANES };
+        let rest = std::array::from_fn(|lane| if lane < counted { T::ZERO } else { T::ONE });
+        self.groups.extend([Group(last), Group(rest)]);
     }
 
     /// Whether all its numbers are finite.
@@ -60,7 +69,7 @@ fn fold<T: Real, const N: usize, const H: usize>(lanes: [T; N]) -> [T; H] {
     half
 }
 
-/// Adds the squares of differences to the lanes.
+/// Adds the squares of differences to the lanes, but for those that are so small that their squares have lost digits.
 #[inline(always)]
 fn step<T: Real>(
     sums: [T; LANES],
@@ -71,30 +80,30 @@ fn step<T: Real>(
     let mut grown = [T::ZERO; LANES];
     for lane in 0..LANES {
         let difference = (group[lane] - values[lane]) * shares[lane];
-        grown[lane] = sums[lane] + difference * difference;
+        let counted = if difference.abs() < T::LEAST_SQUARED { T::ZERO } else { difference };
+        grown[lane] = sums[lane] + counted * counted;
     }
     grown
 }
 
-/// The squared distance of a segment to one that has as many numbers.
+/// The lanes of the squared distance of a segment to a probe that has as many numbers.
 #[inline(always)]
-fn square<T: Real>(segment: &[T], probe: &Probe<T>) -> T {
-    let values = &probe.values[..segment.len()];
+fn lanes<T: Real>(segment: &[T], probe: &Probe<T>) -> [T; LANES] {
+    let groups = segment.as_chunks::<LANES>().0;
+    let (values, ends) = probe.groups.split_at(groups.len());
     let mut sums = [T::ZERO; LANES];
-    let (groups, value_groups) = (segment.as_chunks::<LANES>().0, values.as_chunks::<LANES>().0);
-    let value_groups = &value_groups[..groups.len()];
     let mut i = 0;
     while i < groups.len() {
-        sums = step(sums, &groups[i], &value_groups[i], &[T::ONE; LANES]);
+        sums = step(sums, &groups[i], &values[i].0, &[T::ONE; LANES]);
         i += 1;
     }
-    if probe.ragged {
-        sums = match (segment.last_chunk::<LANES>(), values.last_chunk::<LANES>()) {
-            (Some(group), Some(values)) => step(sums, group, values, &probe.rest),
-            _ => step(sums, &padded(segment), &padded(values), &[T::ONE; LANES]),
-        };
+    if segment.len().is_multiple_of(LANES) {
+        return sums;
     }
-    total(sums)
+    match segment.last_chunk::<LANES>() {
+        Some(last) => step(sums, last, &ends[0].0, &ends[1].0),
+        None => step(sums, &padded(segment), &ends[0].0, &ends[1].0),
+    }
 }
 
 /// The sum of the lanes.
@@ -123,7 +132,7 @@ multiversion! {
     fn squares_along<T: Real>(rows: &[T], dims: usize, probe: &Probe<T>, out: &mut [T]) {
         let width = probe.values.len();
         for i in 0..out.len() {
-            out[i] = square(&rows[i * dims..i * dims + width], probe);
+            out[i] = total(lanes(&rows[i * dims..i * dims + width], probe));
         }
     }
 }
@@ -135,7 +144,7 @@ multiversion! {
         let firsts = &firsts[..out.len()];
         for i in 0..out.len() {
             let first = firsts[i] as usize * dims;
-            out[i] = square(&rows[first..first + width], probe);
+            out[i] = total(lanes(&rows[first..first + width], probe));
         }
     }
 }
@@ -174,27 +183,42 @@ multiversion! {
 }
 
 multiversion! {
-    /// Products of a pose with the vectors of a basis.
-    pub(super) fn products<T: Real>(basis: &[T], pose: &[T], out: &mut [T]) {
-        let dims = pose.len();
-        for k in 0..out.len() {
-            let vector = &basis[k * dims..(k + 1) * dims];
-            let (vectors, poses) = (vector.as_chunks::<LANES>().0, pose.as_chunks::<LANES>().0);
-            let mut sums = [T::ZERO; LANES];
-            let mut i = 0;
-            while i < poses.len() {
-                let mut grown = [T::ZERO; LANES];
-                for lane in 0..LANES {
-                    grown[lane] = sums[lane] + vectors[i][lane] * poses[i][lane];
+    /// Products of poses with the [`LANES`] vectors of a basis, the first numbers of which come first.
+    pub(super) fn products<T: Real>(basis: &[T], poses: &[T], out: &mut [T]) {
+        let dims = basis.len() / LANES;
+        let basis = basis.as_chunks::<LANES>().0;
+        let (shadows, rest) = out.as_chunks_mut::<LANES>();
+        debug_assert!(rest.is_empty());
+        let whole = shadows.len() / POSES * POSES;
+        let mut i = 0;
+        while i < whole {
+            let mut sums = [[T::ZERO; LANES]; POSES];
+            let rows: [&[T]; POSES] = std::array::from_fn(|row| &poses[(i + row) * dims..(i + row + 1) * dims]);
+            for j in 0..dims {
+                for row in 0..POSES {
+                    sums[row] = grow(sums[row], &basis[j], rows[row][j]);
                 }
-                sums = grown;
-                i += 1;
             }
-            let mut total = total(sums);
-            for i in LANES * poses.len()..dims {
-                total += vector[i] * pose[i];
+            shadows[i..i + POSES].copy_from_slice(&sums);
+            i += POSES;
+        }
+        while i < shadows.len() {
+            let mut sums = [T::ZERO; LANES];
+            for j in 0..dims {
+                sums = grow(sums, &basis[j], poses[i * dims + j]);
             }
-            out[k] = total;
+            shadows[i] = sums;
+            i += 1;
         }
     }
+}
+
+/// Adds the product of a vector and a number.
+#[inline(always)]
+fn grow<T: Real>(sums: [T; LANES], vector: &[T; LANES], number: T) -> [T; LANES] {
+    let mut grown = [T::ZERO; LANES];
+    for lane in 0..LANES {
+        grown[lane] = sums[lane] + vector[lane] * number;
+    }
+    grown
 }

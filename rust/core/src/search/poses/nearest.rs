@@ -6,18 +6,20 @@ use crate::error::check_length;
 use crate::parallel::{self, Interrupt};
 use crate::{Error, Real};
 use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Queries from which it pays to make an index first.
-const QUERIES: usize = 32;
+/// Poses of all queries from which it pays to make an index first: to make it takes about as long as to measure nine queries of a
+/// pose, or four of three, and with it a query takes a tenth of the time.
+const QUERIED: usize = 10;
+
+/// Pairs of a candidate and a pose of a query from which it does: learning the directions takes a millisecond in any case.
+const PAIRS: usize = 400_000;
 
 /// Segments of a task where everything is measured: a few megabytes.
 const TASK: usize = 8192;
 
 /// Segments that are measured before they are compared.
 const STRIP: usize = 64;
-
-/// Numbers of its last pose that are measured before the whole segment: half a body, and most segments are too far in these.
-const PART: usize = 48;
 
 /// Queries of a task: all of them see a part of the index while it is in the cache.
 pub(super) const TOGETHER: usize = 4;
@@ -60,9 +62,11 @@ pub fn nearest<T: Real>(
     if count == 0 || number == 0 {
         return Ok(());
     }
+    let queried = number.saturating_mul(segments.length());
+    let few = queried < QUERIED || queried.saturating_mul(segments.candidates()) < PAIRS;
     let without = |query: usize| excluded.map_or(0..0, |excluded| excluded[query].clone());
     let results = match index {
-        None if number < QUERIES => everywhere(segments, queries, &without, count, interrupt)?,
+        None if few => everywhere(segments, queries, &without, count, interrupt)?,
         Some(index) => indexed(segments, index, queries, &without, count, interrupt)?,
         None => indexed(segments, &Index::new(segments, interrupt)?, queries, &without, count, interrupt)?,
     };
@@ -73,7 +77,7 @@ pub fn nearest<T: Real>(
     Ok(())
 }
 
-/// Measures all candidates: of each a part of the last pose, and all where that is near enough.
+/// Measures all candidates.
 fn everywhere<T: Real>(
     segments: &Segments<'_, T>,
     queries: &[T],
@@ -81,33 +85,13 @@ fn everywhere<T: Real>(
     count: usize,
     interrupt: &Interrupt,
 ) -> Result<Vec<Best<T>>, Error> {
-    let dims = segments.dims();
-    let part = dims.min(PART);
-    let sought: Vec<(Probe<T>, Probe<T>, Range<usize>)> = queries
+    let sought: Vec<(Probe<T>, Range<usize>, Limit)> = queries
         .chunks_exact(segments.width())
         .enumerate()
-        .map(|(i, query)| (Probe::new(query), Probe::new(&query[query.len() - dims..][..part]), excluded(i)))
+        .map(|(i, query)| (Probe::new(query), excluded(i), Limit::new()))
         .collect();
-    // More than what roundings make a part greater than the whole.
-    let above = T::ONE + T::EPSILON * T::from_f64(segments.width() as f64);
-    let mut tasks: Vec<Vec<Range<usize>>> = Vec::new();
-    let mut room = 0;
-    for ends in segments.clips() {
-        let mut first = ends.start;
-        while first < ends.end {
-            if room == 0 {
-                tasks.push(Vec::new());
-                room = TASK;
-            }
-            let last = ends.end.min(first + room);
-            room -= last - first;
-            if let Some(task) = tasks.last_mut() {
-                task.push(first..last);
-            }
-            first = last;
-        }
-    }
-    let nanoseconds = segments.candidates() * sought.len() * (segments.width() / 16 + 8);
+    let tasks = tasks(segments.clips());
+    let nanoseconds = segments.candidates() * sought.len() * (segments.width() / 32 + 4);
     let parts = parallel::map(tasks, nanoseconds, |_, task| {
         interrupt.check()?;
         let mut bests = vec![Best::new(count); sought.len()];
@@ -115,26 +99,14 @@ fn everywhere<T: Real>(
         for ends in task {
             for first in ends.clone().step_by(STRIP) {
                 let strip = first..ends.end.min(first + STRIP);
-                for ((probe, first, excluded), best) in sought.iter().zip(&mut bests) {
-                    let squares = &mut squares[..strip.len()];
-                    match best.limit() {
-                        // A segment is no nearer than a part of it.
-                        Some(limit) if segments.width() > part => {
-                            let poses = &segments.features()[strip.start * dims..strip.end * dims];
-                            kernels::in_sequence(poses, dims, first, squares);
-                            let limit = limit * above;
-                            for (end, square) in strip.clone().zip(squares) {
-                                if *square <= limit && !excluded.contains(&end) {
-                                    let exact = std::slice::from_mut(square);
-                                    kernels::in_sequence(segments.at(end), dims, probe, exact);
-                                    best.offer(*square, end);
-                                }
-                            }
-                        }
-                        _ => {
-                            kernels::in_sequence(segments.rows(&strip), dims, probe, squares);
-                            offer(best, &strip, squares, excluded);
-                        }
+                let squares = &mut squares[..strip.len()];
+                for ((probe, excluded, limit), best) in sought.iter().zip(&mut bests) {
+                    kernels::in_sequence(segments.rows(&strip), segments.dims(), probe, squares);
+                    let within = limit.get();
+                    // Most strips hold nothing, and that is told without a branch for each segment.
+                    if squares.iter().fold(false, |any, &square| any | (square <= within)) {
+                        offer(best, &strip, squares, excluded, within);
+                        limit.lower(best);
                     }
                 }
             }
@@ -178,11 +150,62 @@ fn indexed<T: Real>(
     Ok(results.into_iter().flatten().collect())
 }
 
-/// Offers candidates in sequence, but for those that are excluded.
-fn offer<T: Real>(best: &mut Best<T>, ends: &Range<usize>, squares: &[T], excluded: &Range<usize>) {
+/// Cuts clips into tasks of [`TASK`] candidates.
+fn tasks(clips: &[Range<usize>]) -> Vec<Vec<Range<usize>>> {
+    let mut tasks: Vec<Vec<Range<usize>>> = Vec::new();
+    let mut room = 0;
+    for ends in clips {
+        let mut first = ends.start;
+        while first < ends.end {
+            if room == 0 {
+                tasks.push(Vec::new());
+                room = TASK;
+            }
+            let last = ends.end.min(first + room);
+            room -= last - first;
+            if let Some(task) = tasks.last_mut() {
+                task.push(first..last);
+            }
+            first = last;
+        }
+    }
+    tasks
+}
+
+/// Offers candidates in sequence, but for those that are excluded or beyond a limit.
+fn offer<T: Real>(
+    best: &mut Best<T>,
+    ends: &Range<usize>,
+    squares: &[T],
+    excluded: &Range<usize>,
+    within: T,
+) {
     for (end, square) in ends.clone().zip(squares) {
-        if !excluded.contains(&end) {
+        if *square <= within && !excluded.contains(&end) {
             best.offer(*square, end);
+        }
+    }
+}
+
+/// The least squared distance beyond which a task found that nothing counts, for all tasks: where one has found as many as are
+/// sought, others need not look for farther ones. What counts in the end does not depend on who is first.
+struct Limit(AtomicU64);
+
+impl Limit {
+    /// Everything counts.
+    fn new() -> Self {
+        Self(AtomicU64::new(f64::INFINITY.to_bits()))
+    }
+
+    /// The squared distance beyond which nothing counts.
+    fn get<T: Real>(&self) -> T {
+        T::from_f64(f64::from_bits(self.0.load(Ordering::Relaxed)))
+    }
+
+    /// Takes note of what a task has found. The bits of numbers that are not negative lie in the order of the numbers.
+    fn lower<T: Real>(&self, best: &Best<T>) {
+        if let Some(limit) = best.limit() {
+            self.0.fetch_min(limit.to_f64().to_bits(), Ordering::Relaxed);
         }
     }
 }

@@ -4,10 +4,10 @@ use super::Segments;
 use crate::Real;
 
 /// Poses from which the directions are learnt.
-const SAMPLE: usize = 1024;
+const SAMPLE: usize = 512;
 
 /// Rounds of orthogonal iteration: the directions need not be exact, only at right angles.
-const ROUNDS: usize = 12;
+const ROUNDS: usize = 6;
 
 /// Up to `width` directions at right angles, `(width, dims)`, along which most of the variance of the poses lies; zeros where
 /// there are fewer.
@@ -55,9 +55,14 @@ fn covariance<T: Real>(segments: &Segments<'_, T>) -> Vec<f64> {
     for row in &sample {
         for (i, sums) in covariance.chunks_exact_mut(dims).enumerate() {
             let x = (row[i] - mean[i]) * share;
-            for ((sum, y), mean) in sums.iter_mut().zip(row).zip(&mean) {
+            for ((sum, y), mean) in sums[i..].iter_mut().zip(&row[i..]).zip(&mean[i..]) {
                 *sum += x * (y - mean);
             }
+        }
+    }
+    for i in 0..dims {
+        for j in 0..i {
+            covariance[i * dims + j] = covariance[j * dims + i];
         }
     }
     covariance
