@@ -31,6 +31,9 @@ const LENGTH: usize = 3;
 /// Neighbours of a query.
 const COUNT: usize = 64;
 
+/// Queries at once.
+const BATCH: usize = 64;
+
 /// Rows of poses, `(poses, 3 · joints)`.
 fn rows<T: Real>((poses, joints): (usize, usize), seed: u64) -> Vec<T> {
     clips::rotation_vectors(poses, joints, seed).into_iter().map(T::from_f64).collect()
@@ -48,6 +51,13 @@ fn poses<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> 
         let out = Nearest { count: COUNT, indices: &mut indices, distances: &mut distances };
         nearest(&segments, None, queries[50], None, out, &interrupt)
     })?;
+    let many = queries[..BATCH].concat();
+    let (mut all_indices, mut all_distances) = (vec![0; BATCH * COUNT], vec![T::ZERO; BATCH * COUNT]);
+    timer.threads::<T, _, _>("search/nearest_segments_of_64", size, || {
+        let out = Nearest { count: COUNT, indices: &mut all_indices, distances: &mut all_distances };
+        nearest(&segments, None, &many, None, out, &interrupt)
+    })?;
+    timer.levels::<T, _, _>("search/index", size, || Index::new(&segments, &interrupt))?;
     let index = Index::new(&segments, &interrupt)?;
     let mut along = Along::new(COUNT);
     let mut frame = 0;

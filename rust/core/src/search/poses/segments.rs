@@ -51,8 +51,8 @@ impl<'a, T: Real> Segments<'a, T> {
             .filter(|ends| !ends.is_empty())
             .collect::<Vec<_>>();
         let mut members = vec![0; poses.div_ceil(64)];
-        for end in clips.iter().cloned().flatten() {
-            members[end / 64] |= 1 << (end % 64);
+        for ends in &clips {
+            fill(&mut members, ends);
         }
         Ok(Self { features, layout: Arc::new(Layout { dims, length, clips, members }) })
     }
@@ -136,9 +136,34 @@ impl<'a, T: Real> Segments<'a, T> {
     }
 }
 
+/// Sets the bits of a range that is not empty.
+fn fill(words: &mut [u64], bits: &Range<usize>) {
+    let (first, last) = (bits.start / 64, (bits.end - 1) / 64);
+    let (from, to) = (u64::MAX << (bits.start % 64), u64::MAX >> (63 - (bits.end - 1) % 64));
+    if first == last {
+        words[first] |= from & to;
+        return;
+    }
+    words[first] |= from;
+    words[first + 1..last].fill(u64::MAX);
+    words[last] |= to;
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_bits_of_ranges_of_any_length_are_set() {
+        for start in [0, 1, 63, 64, 100] {
+            for end in [start + 1, start + 2, start + 63, start + 64, start + 65, start + 200] {
+                let mut words = [0; 5];
+                fill(&mut words, &(start..end));
+                let set = |bit: usize| words[bit / 64] >> (bit % 64) & 1 == 1;
+                assert!((0..320).all(|bit| set(bit) == (start..end).contains(&bit)), "{start}..{end}");
+            }
+        }
+    }
 
     #[test]
     fn segments_lie_within_clips_and_have_successors() {
