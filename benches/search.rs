@@ -5,7 +5,8 @@ use quatfilt_benches::timer::Timer;
 use quatfilt_core::parallel::Interrupt;
 use quatfilt_core::search::patch_neighbors::PatchNeighbors;
 use quatfilt_core::search::poses::along::Along;
-use quatfilt_core::search::poses::graph::{self, Neighbors};
+use quatfilt_core::search::poses::graph::{self, Apart, Graph, Neighbors};
+use quatfilt_core::search::poses::walk::{Database, Trust, Walk};
 use quatfilt_core::search::poses::{Index, Nearest, Segments, nearest};
 use quatfilt_core::{ClipView, Error, Real};
 
@@ -21,6 +22,7 @@ fn main() -> Result<(), Error> {
     }
     for size in timer.sizes(&[2_000]) {
         neighbor_graph::<f32>(&mut timer, size)?;
+        walk::<f32>(&mut timer, size)?;
     }
     Ok(())
 }
@@ -33,6 +35,13 @@ const COUNT: usize = 64;
 
 /// Queries at once.
 const BATCH: usize = 64;
+
+/// Which segments are neighbours in a graph, and how many.
+const APART: Apart = Apart { exclusion: 15, spacing: 8 };
+const DEGREE: usize = 16;
+
+/// The nearest that a walk along a graph goes out from.
+const BREADTH: usize = 256;
 
 /// Rows of poses, `(poses, 3 · joints)`.
 fn rows<T: Real>((poses, joints): (usize, usize), seed: u64) -> Vec<T> {
@@ -69,17 +78,39 @@ fn poses<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> 
     })
 }
 
+fn walk<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
+    let (poses, joints) = size;
+    let features = rows::<T>(size, 1);
+    let (starts, interrupt) = ([0, poses], Interrupt::new());
+    let single = Segments::new(&features, 3 * joints, &starts, 1, 1)?;
+    let (mut indices, mut distances) = (vec![0; poses * DEGREE], vec![T::ZERO; poses * DEGREE]);
+    let out = Neighbors { degree: DEGREE, indices: &mut indices, distances: &mut distances };
+    graph::neighbors(&single, &Index::new(&single, &interrupt)?, APART, out, &interrupt)?;
+    let segments = Segments::new(&features, 3 * joints, &starts, LENGTH, 1)?;
+    let index = Index::new(&segments, &interrupt)?;
+    let graph = Graph::new(&indices, poses, DEGREE)?;
+    let database = Database { segments: &segments, index: &index, graph };
+    let path = rows::<T>((100, joints), 1);
+    let queries: Vec<&[T]> = path.windows(segments.width()).step_by(segments.dims()).collect();
+    let mut walk = Walk::new(COUNT, BREADTH, Trust { frames: usize::MAX, ratio: f64::INFINITY });
+    let mut frame = 0;
+    timer.levels::<T, _, _>("search/walk", size, || {
+        frame = (frame + 1) % (2 * queries.len());
+        let query = queries[frame.min(2 * queries.len() - 1 - frame)];
+        walk.next(database, query, &(0..0)).map(|(best, _)| best.found().len())
+    })
+}
+
 fn neighbor_graph<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
     let (poses, joints) = size;
     let features = rows::<T>(size, 1);
     let segments = Segments::new(&features, 3 * joints, &[0, poses], 1, 1)?;
-    let degree = 16;
-    let (mut indices, mut distances) = (vec![0; poses * degree], vec![T::ZERO; poses * degree]);
+    let (mut indices, mut distances) = (vec![0; poses * DEGREE], vec![T::ZERO; poses * DEGREE]);
     let interrupt = Interrupt::new();
     timer.levels::<T, _, _>("search/neighbor_graph", size, || {
         let index = Index::new(&segments, &interrupt)?;
-        let out = Neighbors { degree, indices: &mut indices, distances: &mut distances };
-        graph::neighbors(&segments, &index, 15, out, &interrupt)
+        let out = Neighbors { degree: DEGREE, indices: &mut indices, distances: &mut distances };
+        graph::neighbors(&segments, &index, APART, out, &interrupt)
     })
 }
 

@@ -484,6 +484,7 @@ def neighbor_graph(
     length: int,
     successors: int,
     exclusion: int,
+    spacing: int,
     /,
 ) -> tuple[NDArray[np.int32], Array]: ...
 
@@ -500,6 +501,7 @@ def segment_walk(
     k: int,
     length: int,
     successors: int,
+    breadth: int,
     refresh: int,
     ratio: float,
     /,

@@ -64,6 +64,7 @@ def test_nearest_segments_refuses(wrong, error, message):
         ({"degree": 0}, "degree: expected an integer of at least 1 and at most 1000, got 0"),
         ({"length": 0}, "length: expected an integer of at least 1 and at most 100000, got 0"),
         ({"exclusion": -1}, "exclusion: expected an integer of at least 0 and at most 100000, got -1"),
+        ({"spacing": 0}, "spacing: expected an integer of at least 1 and at most 1000, got 0"),
     ],
 )
 def test_neighbor_graph_refuses(wrong, message):
@@ -81,6 +82,7 @@ GRAPH = np.tile(np.arange(60, dtype=np.int32)[:, None], (1, 2))
         ({"graph": GRAPH[:59]}, ValueError, "graph: expected shape (60, degree), got (59, 2)"),
         ({"graph": GRAPH + 1}, ValueError, "graph: expected indices from −1 to 59, got 1 to 60"),
         ({"graph": GRAPH + 0.5}, TypeError, "graph: expected integers, got dtype float64"),
+        ({"breadth": 0}, ValueError, "breadth: expected an integer of at least 1 and at most 100000, got 0"),
         (
             {"refresh": -1},
             ValueError,

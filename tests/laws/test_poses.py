@@ -146,7 +146,7 @@ def test_a_memory_map_is_read_in_place(tmp_path):
 
 def test_a_graph_holds_the_nearest_but_for_those_near_in_time(backend):
     features = motions()
-    indices, distances = backend.neighbor_graph(features, STARTS, 5, 2, 1, 4)
+    indices, distances = backend.neighbor_graph(features, STARTS, 5, 2, 1, 4, 1)
     assert indices.dtype == np.int32
     assert (indices[[0, 119, 120, 121, 399, 639]] == -1).all()
     for e in (1, 60, 118, 250, 638):
@@ -158,15 +158,31 @@ def test_a_graph_holds_the_nearest_but_for_those_near_in_time(backend):
         np.testing.assert_array_equal(distances[e], expected[1][0])
 
 
-def along(backend, features, graph, path, refresh, ratio, k=4):
+@pytest.mark.parametrize("spacing", [2, 8, 1000])
+def test_neighbours_lie_apart_in_time(backend, spacing):
+    features = motions()
+    indices, distances = backend.neighbor_graph(features, STARTS, 7, 2, 1, 4, spacing)
+    near = backend.neighbor_graph(features, STARTS, 639, 2, 1, 4, 1)
+    clip = np.searchsorted(STARTS, np.arange(len(features)), "right")
+    for e in (1, 60, 118, 250, 638):
+        chosen: list[int] = []
+        for other in near[0][e][near[0][e] >= 0].tolist():
+            if all(abs(other - one) >= spacing or clip[one] != clip[other] for one in chosen):
+                chosen.append(other)
+        expected = np.array((chosen + [-1] * 7)[:7])
+        np.testing.assert_array_equal(indices[e], expected)
+        np.testing.assert_array_equal(np.isinf(distances[e]), expected < 0)
+
+
+def along(backend, features, graph, path, refresh, ratio, k=4, breadth=4):
     """Return what a walk along a motion finds in each frame."""
-    walk = backend.segment_walk(features, STARTS, graph, k, 3, 1, refresh, ratio)
+    walk = backend.segment_walk(features, STARTS, graph, k, 3, 1, breadth, refresh, ratio)
     return [walk.next(path[t : t + 3], 0, 0) for t in range(len(path) - 2)]
 
 
 def test_a_walk_that_trusts_nothing_is_exact(backend):
     features = motions()
-    graph, _ = backend.neighbor_graph(features, STARTS, 4, 1, 1, 5)
+    graph, _ = backend.neighbor_graph(features, STARTS, 4, 1, 1, 5, 2)
     path = features[200:240] + 0.03
     for t, (indices, distances, full) in enumerate(along(backend, features, graph, path, 0, np.inf)):
         expected = backend.nearest_segments(features, STARTS, path[None, t : t + 3], 4, 1, None)
@@ -177,15 +193,43 @@ def test_a_walk_that_trusts_nothing_is_exact(backend):
 
 def test_a_walk_follows_a_motion_of_the_database(backend):
     features = motions()
-    graph, _ = backend.neighbor_graph(features, STARTS, 4, 1, 1, 5)
+    graph, _ = backend.neighbor_graph(features, STARTS, 4, 1, 1, 5, 2)
     found = along(backend, features, graph, features[200:260], 1000, np.inf)
     assert [full for _, _, full in found] == [True] + [False] * 57
     assert [indices[0] for indices, _, _ in found] == list(range(202, 260))
 
 
+def test_a_wide_walk_finds_what_a_search_of_all_finds(backend):
+    features = motions()
+    graph, _ = backend.neighbor_graph(features, STARTS, 4, 1, 1, 5, 2)
+    path = features[200:240] + 0.03
+    for t, (indices, distances, full) in enumerate(
+        along(backend, features, graph, path, 1000, np.inf, breadth=300)
+    ):
+        expected = backend.nearest_segments(features, STARTS, path[None, t : t + 3], 4, 1, None)
+        assert full == (t == 0)
+        np.testing.assert_array_equal(indices, expected[0][0])
+        np.testing.assert_array_equal(distances, expected[1][0])
+
+
+def test_a_wider_walk_misses_less(backend):
+    features = motions()
+    graph, _ = backend.neighbor_graph(features, STARTS, 2, 1, 1, 5, 8)
+    path = np.random.default_rng(9).standard_normal((80, 37)).cumsum(axis=0) / 5
+    truth = backend.nearest_segments(
+        features, STARTS, np.stack([path[t : t + 3] for t in range(78)]), 8, 1, None
+    )
+    shares = []
+    for breadth in (8, 24, 120):
+        found = along(backend, features, graph, path, 1000, np.inf, k=8, breadth=breadth)
+        shares.append(np.mean([np.isin(a, b[0]).mean() for a, b in zip(truth[0], found, strict=True)]))
+    assert shares[0] < shares[1] < shares[2]
+    assert shares[2] > 0.95
+
+
 def test_a_walk_looks_at_all_after_some_frames_and_where_all_is_far(backend):
     features = motions()
-    graph, _ = backend.neighbor_graph(features, STARTS, 4, 1, 1, 5)
+    graph, _ = backend.neighbor_graph(features, STARTS, 4, 1, 1, 5, 2)
     path = features[200:220].copy()
     path[12:] += 5
     found = [full for _, _, full in along(backend, features, graph, path, 6, 3.0)]
@@ -194,7 +238,7 @@ def test_a_walk_looks_at_all_after_some_frames_and_where_all_is_far(backend):
 
 def test_a_walk_begins_anew_after_a_pose_that_is_not_finite(backend):
     features = motions()
-    graph, _ = backend.neighbor_graph(features, STARTS, 4, 1, 1, 5)
+    graph, _ = backend.neighbor_graph(features, STARTS, 4, 1, 1, 5, 2)
     path = features[200:220].copy()
     path[8, 3] = np.nan
     found = along(backend, features, graph, path, 1000, np.inf)
@@ -205,8 +249,8 @@ def test_a_walk_begins_anew_after_a_pose_that_is_not_finite(backend):
 
 def test_what_is_excluded_is_not_found_along_a_graph(backend):
     features = motions()
-    graph, _ = backend.neighbor_graph(features, STARTS, 4, 1, 1, 5)
-    walk = backend.segment_walk(features, STARTS, graph, 4, 3, 1, 1000, np.inf)
+    graph, _ = backend.neighbor_graph(features, STARTS, 4, 1, 1, 5, 2)
+    walk = backend.segment_walk(features, STARTS, graph, 4, 3, 1, 16, 1000, np.inf)
     for t in range(200, 230):
         indices, _, _ = walk.next(features[t : t + 3], 121, 400)
         assert not ((indices >= 121) & (indices < 400)).any()
@@ -233,7 +277,7 @@ def test_a_motion_that_stands_still_and_then_leaps_is_found(backend):
 
 def test_what_was_excluded_is_found_when_it_is_not(backend):
     features = motions()
-    walk = backend.segment_walk(features, STARTS, None, 4, 3, 1, 15, 1.5)
+    walk = backend.segment_walk(features, STARTS, None, 4, 3, 1, 16, 15, 1.5)
     for t in range(200, 230):
         walk.next(features[t : t + 3], 121, 400)
     assert walk.next(features[230:233], 0, 0)[0][0] == 232

@@ -51,7 +51,7 @@ def test_along_a_motion():
 
 def test_the_graph():
     features = motions(np.float64)
-    indices, distances = qf.neighbor_graph(features, STARTS, degree=8, exclusion=0)
+    indices, distances = qf.neighbor_graph(features, STARTS, degree=8, exclusion=0, spacing=1)
     ends = np.flatnonzero(indices[:, 0] >= 0)
     expected, expected_distances = brute_force(features, features[ends, None], 9, 1)
     # The other library finds each pose itself first.

@@ -15,6 +15,9 @@ _MOST = 100_000
 _HIGHEST_DEGREE = 1_000
 """Neighbours of a pose: a search along the graph looks at all of them."""
 
+_WIDEST_SPACING = 1_000
+"""Poses: the cost grows with it."""
+
 _LONGEST = 100_000
 """Poses: clips are hardly longer."""
 
@@ -102,8 +105,9 @@ def neighbor_graph(
     length: int = 1,
     successors: int = 1,
     exclusion: int = 15,
+    spacing: int = 8,
 ) -> tuple[NDArray[np.int32], Array]:
-    """Find the nearest segments of every segment of a database: the graph that `PoseSearch` goes along.
+    """Find the nearest segments of every segment of a database that lie apart: the graph that `PoseSearch` goes along.
 
     The graph is exact, and the same for any number of threads.
 
@@ -122,6 +126,9 @@ def neighbor_graph(
     exclusion : int, poses, default 15
         Poses of the same clip that are at most so far away in time are no neighbours: they are much the same, and a search comes to
         them by itself.
+    spacing : int, poses, default 8
+        Of poses that lie less than so far apart in a clip only the nearest is a neighbour, for the same reason: neighbours then lie in as
+        many passages, and a search along the graph finds more of them. 1: any may be neighbours.
 
     Returns
     -------
@@ -141,8 +148,8 @@ def neighbor_graph(
 
     Notes
     -----
-    Cost: that of one query of `nearest_segments` for each pose, so it grows with the square of the number of poses. Memory while it
-    works: 80 bytes for each pose, besides the result of ``8·degree``.
+    Cost: that of one query of `nearest_segments` for each pose, with ``k = degree·spacing``, so it grows with the square of the number
+    of poses. Memory while it works: 80 bytes for each pose, besides the result of ``8·degree``.
 
     References
     ----------
@@ -154,7 +161,7 @@ def neighbor_graph(
     >>> features = np.sin(np.arange(200)[:, None] / [5.0, 7.0, 11.0])
     >>> indices, distances = qf.neighbor_graph(features, [0, 120, 200], degree=2)
     >>> indices[50]
-    array([185, 186], dtype=int32)
+    array([185, 177], dtype=int32)
     """
     poses = _validation.features(features, "features")
     found = ops().neighbor_graph(
@@ -164,6 +171,7 @@ def neighbor_graph(
         _validation.integer(length, "length", at_least=1, at_most=_LONGEST),
         _validation.integer(successors, "successors", at_least=0, at_most=_LONGEST),
         _validation.integer(exclusion, "exclusion", at_least=0, at_most=_LONGEST),
+        _validation.integer(spacing, "spacing", at_least=1, at_most=_WIDEST_SPACING),
     )
     return cast("tuple[NDArray[np.int32], Array]", found)
 

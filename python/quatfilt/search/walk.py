@@ -20,8 +20,8 @@ class PoseSearch:
     Without a graph the search is exact: what is found is what `nearest_segments` finds. It is faster in sequence, for what was far
     from one frame cannot be near to the next, and is looked at again only when the motion has travelled far enough.
 
-    With a graph the candidates are the nearest of the frame before, the poses after them, and the neighbours of both. All segments
-    are looked at in the first frame, after every `refresh` frames, where there are fewer than `k` candidates, and where the last
+    With a graph it begins with the nearest of the frame before and the poses after them. From the nearest that it knows it goes on to the
+    neighbours of that, in the graph and in time, and so forth, until it has been at all of the `breadth` nearest. All segments are looked at in the first frame, after every `refresh` frames, where there are fewer than `k` candidates, and where the last
     of the nearest is more than `ratio` times as far as it was at best since all were looked at. The distances are exact; what a
     search along the graph may miss are segments.
 
@@ -33,13 +33,16 @@ class PoseSearch:
         The first pose of each clip, and the number of poses.
     graph : array_like of int32, shape (poses, degree), or None, default None
         Neighbours of each pose, −1 where there are fewer: what `neighbor_graph` returns, or `MotionDatabase.graph`. None: the
-        search is exact, and neither `refresh` nor `ratio` matters.
+        search is exact, and `breadth`, `refresh` and `ratio` do not matter.
     k : int, default 64
         How many segments are found for each frame; from 1 to 100,000.
     length : int, poses, default 3
         Length of a segment.
     successors : int, poses, default 1
         How many poses of its clip must follow a segment that is found.
+    breadth : int, default 256
+        From how many of the nearest a search along the graph goes on to their neighbours; fewer than `k` count as `k`. More of them miss
+        less, and take as much longer.
     refresh : int, frames, default 15
         Frames after which all segments are looked at again; 0 for every frame.
     ratio : float, default 1.5
@@ -57,13 +60,15 @@ class PoseSearch:
 
     Notes
     -----
-    Cost of a frame along a graph: at most ``2·k·(degree + 1)`` segments; they overlap, and are fewer. Without one: a bound for eight
-    poses, and a few hundredths of the poses. Memory: 77 bytes for each pose, and 1 ms for a thousand poses to set it up, besides
+    Cost of a frame along a graph: at most ``breadth·(degree + 4)`` segments; they overlap, and are fewer: on motions four times
+    `breadth`. Without one: a bound for eight poses, and a few hundredths of the poses. Memory: 77 bytes for each pose, and 1 ms for a thousand poses to set it up, besides
     `features` and `graph`.
 
     References
     ----------
     .. [1] J. Chai and J. K. Hodgins, "Performance animation from low-dimensional control signals", SIGGRAPH 2005.
+    .. [2] Y. A. Malkov and D. A. Yashunin, "Efficient and robust approximate nearest neighbor search using hierarchical navigable small
+       world graphs", IEEE Transactions on Pattern Analysis and Machine Intelligence 42, 2020.
 
     Examples
     --------
@@ -87,6 +92,7 @@ class PoseSearch:
         k: int = 64,
         length: int = 3,
         successors: int = 1,
+        breadth: int = 256,
         refresh: int = 15,
         ratio: float = 1.5,
     ) -> None:
@@ -99,6 +105,7 @@ class PoseSearch:
             _validation.integer(k, "k", at_least=1, at_most=_MOST),
             steps,
             _validation.integer(successors, "successors", at_least=0, at_most=_LONGEST),
+            _validation.integer(breadth, "breadth", at_least=1, at_most=_MOST),
             _validation.integer(refresh, "refresh", at_least=0, at_most=_LONGEST),
             _validation.number(ratio, "ratio", at_least=1, infinite=True),
         )

@@ -107,13 +107,14 @@ def test_numbers_whose_squares_lose_digits(number, dtype, tiny):
     length=st.integers(1, 3),
     degree=st.sampled_from([1, 6, 40]),
     exclusion=st.sampled_from([0, 3, 500]),
+    spacing=st.sampled_from([1, 2, 7, 500]),
     dtype=st.sampled_from([np.float32, np.float64]),
 )
-def test_neighbor_graph(seed, poses, length, degree, exclusion, dtype):
+def test_neighbor_graph(seed, poses, length, degree, exclusion, spacing, dtype):
     rng = np.random.default_rng(seed)
     features = walks(rng, poses, 20, 0.1, dtype)
     features[rng.random(poses) < 0.02] = np.nan
-    arguments = features, borders(rng, poses), degree, length, 1, exclusion
+    arguments = features, borders(rng, poses), degree, length, 1, exclusion, spacing
     agree(
         _core.neighbor_graph(*arguments),
         _reference.neighbor_graph(*arguments),
@@ -126,16 +127,17 @@ def test_neighbor_graph(seed, poses, length, degree, exclusion, dtype):
     seed=st.integers(0, 2**32 - 1),
     length=st.integers(1, 3),
     degree=st.sampled_from([1, 4]),
+    breadth=st.sampled_from([1, 6, 20, 300]),
     refresh=st.sampled_from([0, 5, 1000]),
     ratio=st.sampled_from([1.0, 1.2, np.inf]),
 )
-def test_walk(seed, length, degree, refresh, ratio):
+def test_walk(seed, length, degree, breadth, refresh, ratio):
     rng = np.random.default_rng(seed)
     features = walks(rng, 400, 12, 0.0, np.float64)
     starts = borders(rng, 400)
-    graph, _ = _core.neighbor_graph(features, starts, degree, 1, 1, 5)
+    graph, _ = _core.neighbor_graph(features, starts, degree, 1, 1, 5, 3)
     ours, theirs = (
-        backend.segment_walk(features, starts, graph, 6, length, 1, refresh, ratio)
+        backend.segment_walk(features, starts, graph, 6, length, 1, breadth, refresh, ratio)
         for backend in (_core, _reference)
     )
     path = walks(rng, 60, 12, 0.0, np.float64)
@@ -167,7 +169,8 @@ def test_along_a_motion_without_a_graph(seed, length, dims, speed, dtype):
     path[rng.random(60) < 0.02] = np.nan
     k = int(rng.integers(1, 70))
     ours, theirs = (
-        backend.segment_walk(features, starts, None, k, length, 1, 0, 1.0) for backend in (_core, _reference)
+        backend.segment_walk(features, starts, None, k, length, 1, 1, 0, 1.0)
+        for backend in (_core, _reference)
     )
     for t in range(60 - length):
         if t == 40:

@@ -90,8 +90,9 @@ def neighbor_graph(
     length: int,
     successors: int,
     exclusion: int,
+    spacing: int,
 ) -> tuple[NDArray[np.int32], Reals]:
-    """Find the `degree` nearest segments to each segment.
+    """Find the `degree` nearest segments to each segment that lie apart from it and from each other.
 
     Parameters
     ----------
@@ -107,6 +108,8 @@ def neighbor_graph(
         How many poses of its clip must follow a candidate.
     exclusion : int, poses
         Segments of the same clip so near in time are no neighbours, nor is the segment itself.
+    spacing : int, poses
+        Of segments that lie less than so far apart in a clip only the nearest is a neighbour.
 
     Returns
     -------
@@ -116,10 +119,25 @@ def neighbor_graph(
     """
     indices = np.full((len(features), degree), NOBODY, np.int32)
     distances = np.full((len(features), degree), np.inf, features.dtype)
+    clip = np.searchsorted(starts, np.arange(len(features)), side="right")
     for first, last in itertools.pairwise(starts):
         for end in range(first + length - 1, last - successors):
             near = np.array([[max(end - exclusion, first), min(end + exclusion + 1, last)]])
             query = features[None, end + 1 - length : end + 1]
-            found = nearest_segments(features, starts, query, degree, successors, near)
-            indices[end], distances[end] = found[0][0], found[1][0]
+            found = nearest_segments(features, starts, query, len(features), successors, near)
+            chosen = _apart(found[0][0], clip, spacing, degree)
+            indices[end, : len(chosen)] = found[0][0, chosen]
+            distances[end, : len(chosen)] = found[1][0, chosen]
     return indices, distances
+
+
+def _apart(ends: NDArray[np.int64], clip: Indices, spacing: int, count: int) -> list[int]:
+    """Return the places of the first `count` that are not less than `spacing` poses from one before them in a clip."""
+    chosen: list[int] = []
+    free = np.ones(len(clip), bool)
+    for place, end in enumerate(ends):
+        if end != NOBODY and free[end] and len(chosen) < count:
+            chosen.append(place)
+            near = slice(max(0, int(end) - spacing + 1), int(end) + spacing)
+            free[near] &= clip[near] != clip[end]
+    return chosen

@@ -374,7 +374,7 @@ class MotionDatabase:
             self.features, self.starts, queries, k=k, successors=successors, exclude=exclude
         )
 
-    def build_graph(self, *, degree: int = 16, exclusion: float = 0.25) -> None:
+    def build_graph(self, *, degree: int = 16, exclusion: float = 0.25, spacing: float = 2 / 15) -> None:
         """Find the neighbours of each pose, for `PoseSearch`: sets `graph` to what `neighbor_graph` finds.
 
         Parameters
@@ -383,6 +383,8 @@ class MotionDatabase:
             How many neighbours each pose has.
         exclusion : float, seconds, default 0.25
             Poses of the same clip that are at most so far away in time are no neighbours.
+        spacing : float, seconds, default 2/15
+            Of poses that lie less than so far apart in a clip only the nearest is a neighbour.
 
         Raises
         ------
@@ -390,7 +392,10 @@ class MotionDatabase:
             As there.
         """
         frames = round(_validation.number(exclusion, "exclusion", at_least=0) * self.fps)
-        self.graph, _ = neighbor_graph(self.features, self.starts, degree=degree, exclusion=frames)
+        apart = max(1, round(_validation.number(spacing, "spacing", at_least=0) * self.fps))
+        self.graph, _ = neighbor_graph(
+            self.features, self.starts, degree=degree, exclusion=frames, spacing=apart
+        )
 
     def motion(self, clip: int) -> Motion:
         """Return a clip as a motion again, with its heading and its own skeleton.

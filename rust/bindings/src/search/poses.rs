@@ -6,7 +6,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use quatfilt_core::Real;
 use quatfilt_core::search::poses::along::Along;
-use quatfilt_core::search::poses::graph::{self, Graph, Neighbors};
+use quatfilt_core::search::poses::graph::{self, Apart, Graph, Neighbors};
 use quatfilt_core::search::poses::walk::{Database, Trust, Walk};
 use quatfilt_core::search::poses::{self, Index, Layout, Nearest, Segments};
 use std::ops::Range;
@@ -60,7 +60,8 @@ pub(crate) fn nearest_segments(
 
 /// The `degree` segments of `length` poses nearest to each segment, and their distances, `(poses, degree)`.
 #[pyfunction]
-#[pyo3(signature = (features, starts, degree, length, successors, exclusion, /))]
+#[pyo3(signature = (features, starts, degree, length, successors, exclusion, spacing, /))]
+#[allow(clippy::too_many_arguments, reason = "the reference's positional arguments")]
 pub(crate) fn neighbor_graph(
     py: Python<'_>,
     features: &Bound<'_, PyAny>,
@@ -69,6 +70,7 @@ pub(crate) fn neighbor_graph(
     length: usize,
     successors: usize,
     exclusion: usize,
+    spacing: usize,
 ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
     let starts = numbers("starts", starts)?;
     by_dtype!(features, T => {
@@ -86,7 +88,7 @@ pub(crate) fn neighbor_graph(
             let work = segments.candidates().saturating_mul(segments.candidates());
             run_interruptible(py, work, |interrupt| {
                 let index = Index::new(&segments, interrupt)?;
-                graph::neighbors(&segments, &index, exclusion, out, interrupt)
+                graph::neighbors(&segments, &index, Apart { exclusion, spacing }, out, interrupt)
             })?;
         }
         Ok((indices.into_any().unbind(), distances.into_any().unbind()))
@@ -122,7 +124,7 @@ enum Search<T> {
 
 /// A search along a motion for the `k` nearest segments, that starts with the next frame that is asked for; exact without a graph.
 #[pyfunction]
-#[pyo3(signature = (features, starts, graph, k, length, successors, refresh, ratio, /))]
+#[pyo3(signature = (features, starts, graph, k, length, successors, breadth, refresh, ratio, /))]
 #[allow(clippy::too_many_arguments, reason = "the reference's positional arguments")]
 pub(crate) fn segment_walk(
     py: Python<'_>,
@@ -132,15 +134,16 @@ pub(crate) fn segment_walk(
     k: usize,
     length: usize,
     successors: usize,
+    breadth: usize,
     refresh: usize,
     ratio: f64,
 ) -> PyResult<SegmentWalk> {
     let starts = numbers("starts", starts)?;
-    let trust = graph.map(|_| Trust { frames: refresh, ratio });
+    let along = graph.map(|_| (breadth, Trust { frames: refresh, ratio }));
     let inner = if crate::array::is_float32(features)? {
-        Inner::Float32(state(py, features, &starts, k, length, successors, trust)?)
+        Inner::Float32(state(py, features, &starts, k, length, successors, along)?)
     } else {
-        Inner::Float64(state(py, features, &starts, k, length, successors, trust)?)
+        Inner::Float64(state(py, features, &starts, k, length, successors, along)?)
     };
     let graph = graph.map(Bound::cast::<PyArrayDyn<i32>>).transpose();
     let graph = graph.map_err(|_| PyValueError::new_err("graph: expected int32"))?;
@@ -158,14 +161,14 @@ fn state<T: Real + Element>(
     count: usize,
     length: usize,
     successors: usize,
-    trust: Option<Trust>,
+    along: Option<(usize, Trust)>,
 ) -> PyResult<State<T>> {
     let features = input::<T>("features", features)?;
     let segments = segments(&features, starts, length, successors)?;
     let work = segments.poses().saturating_mul(segments.dims());
     let index = run_interruptible(py, work, |interrupt| Index::new(&segments, interrupt))?;
-    let search = match trust {
-        Some(trust) => Search::Walk(Walk::new(count, trust)),
+    let search = match along {
+        Some((breadth, trust)) => Search::Walk(Walk::new(count, breadth, trust)),
         None => Search::Along(Along::new(count)),
     };
     Ok(State { layout: Arc::clone(segments.layout()), index, search, count })

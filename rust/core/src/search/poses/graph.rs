@@ -1,13 +1,15 @@
 //! The graph of neighbours: the nearest segments of every segment of a database.
 //!
 //! J. Chai and J. K. Hodgins, "Performance animation from low-dimensional control signals", 2005. Every segment is searched for
-//! in the index: the graph is exact.
+//! in the index: the graph is exact. Neighbours lie apart in time, so that they lead to as many passages; a search along the graph comes to
+//! those beside them by itself.
 
 use super::nearest::TOGETHER;
 use super::{Best, Index, Segments};
 use crate::error::check_length;
 use crate::parallel::{self, Interrupt};
 use crate::{Error, Real};
+use std::ops::Range;
 
 /// What stands for a neighbour that does not exist.
 const NOBODY: i32 = -1;
@@ -48,14 +50,23 @@ pub struct Neighbors<'a, T> {
     pub distances: &'a mut [T],
 }
 
-/// Finds the candidates that are nearest to each candidate, but for those of its own clip at most `exclusion` poses away.
+/// Which segments are neighbours.
+#[derive(Debug, Clone, Copy)]
+pub struct Apart {
+    /// Those of its own clip at most so many poses away are none.
+    pub exclusion: usize,
+    /// Of those less than so many poses apart in a clip only the nearest is one.
+    pub spacing: usize,
+}
+
+/// Finds the candidates that are nearest to each candidate, of those that are far enough `apart`.
 ///
 /// # Errors
 /// [`Error::Length`] if slices do not fit together; [`Error::Parameter`] for more than 2³¹ poses; [`Error::Interrupted`].
 pub fn neighbors<T: Real>(
     segments: &Segments<'_, T>,
     index: &Index<T>,
-    exclusion: usize,
+    apart: Apart,
     out: Neighbors<'_, T>,
     interrupt: &Interrupt,
 ) -> Result<(), Error> {
@@ -85,23 +96,53 @@ pub fn neighbors<T: Real>(
     parallel::for_each(tasks, nanoseconds, |_, (ends, before, indices, distances)| {
         interrupt.check()?;
         let clip = &clips[clips.partition_point(|clip| clip.end <= ends.start)];
-        let queries: Vec<_> = ends
-            .clone()
-            .map(|end| {
-                let excluded = end.saturating_sub(exclusion).max(clip.start)
-                    ..clip.end.min(end.saturating_add(exclusion).saturating_add(1));
-                index.query(segments.at(end), segments.dims(), excluded)
-            })
-            .collect();
-        let mut bests = vec![Best::new(degree); queries.len()];
+        let query = |&end: &usize| {
+            let excluded = end.saturating_sub(apart.exclusion).max(clip.start)
+                ..clip.end.min(end.saturating_add(apart.exclusion).saturating_add(1));
+            index.query(segments.at(end), segments.dims(), excluded)
+        };
+        let mut ends: Vec<usize> = ends.collect();
         let mut squares = Vec::new();
-        for (queries, bests) in queries.chunks(TOGETHER).zip(bests.chunks_mut(TOGETHER)) {
-            index.search(segments, queries, bests, &mut squares);
-        }
-        for (end, best) in ends.zip(&bests) {
-            let row = (end - before) * degree..(end - before + 1) * degree;
-            best.write(&mut indices[row.clone()], &mut distances[row]);
+        for count in sought(degree, apart.spacing) {
+            let queries: Vec<_> = ends.iter().map(query).collect();
+            let mut left = Vec::new();
+            for (ends, queries) in ends.chunks(TOGETHER).zip(queries.chunks(TOGETHER)) {
+                let mut bests = vec![Best::new(count); queries.len()];
+                index.search(segments, queries, &mut bests, &mut squares);
+                for (&end, best) in ends.iter().zip(&bests) {
+                    let chosen = thinned(best, clips, apart.spacing, degree);
+                    if chosen.found().len() < degree && best.found().len() == count {
+                        left.push(end);
+                    }
+                    let row = (end - before) * degree..(end - before + 1) * degree;
+                    chosen.write(&mut indices[row.clone()], &mut distances[row]);
+                }
+            }
+            ends = left;
         }
         Ok(())
     })
+}
+
+/// How many of the nearest are looked for: usually enough that `degree` of them lie apart, and then as many as it takes at most, for
+/// each that is taken keeps at most so many from being taken.
+fn sought(degree: usize, spacing: usize) -> [usize; 2] {
+    let spacing = spacing.max(1);
+    [degree.saturating_mul(spacing), degree.saturating_mul(2 * spacing - 1)]
+}
+
+/// The nearest, of those less than `spacing` poses apart in a clip only the nearest.
+fn thinned<T: Real>(best: &Best<T>, clips: &[Range<usize>], spacing: usize, degree: usize) -> Best<T> {
+    let mut chosen: Best<T> = Best::new(degree);
+    for &(square, end) in best.found() {
+        let same_clip = |other: usize| {
+            let first = end.min(other);
+            clips[clips.partition_point(|clip| clip.end <= first)].contains(&end.max(other))
+        };
+        let near = |&(_, other): &(T, usize)| end.abs_diff(other) < spacing && same_clip(other);
+        if !chosen.found().iter().any(near) {
+            chosen.offer(square, end);
+        }
+    }
+    chosen
 }

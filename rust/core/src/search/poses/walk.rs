@@ -1,8 +1,11 @@
 //! Search from frame to frame: the nearest segments of one frame lie near those of the next.
 //!
-//! J. Chai and J. K. Hodgins, "Performance animation from low-dimensional control signals", 2005. Candidates are the nearest of
-//! the frame before, their successors, and the neighbours of both in the graph. What was lost on the way is found again by full
-//! searches, at the start, in regular intervals, and where the last of the nearest is farther than it was.
+//! J. Chai and J. K. Hodgins, "Performance animation from low-dimensional control signals", 2005: the nearest of a frame lie near those
+//! of the frame before. From them and their successors the search goes on to the neighbours of the nearest that is known, in the graph and
+//! in time, as long as that leads nearer than the last of a list that is longer than what is sought (Y. A. Malkov and D. A. Yashunin,
+//! "Efficient and robust approximate nearest neighbor search using hierarchical navigable small world graphs", 2020, algorithm 2).
+//! What was lost on the way is found again by full searches, at the start, in regular intervals, and where the last of the
+//! nearest is farther than it was.
 
 use super::graph::Graph;
 use super::{Best, Index, Probe, Segments, kernels};
@@ -33,33 +36,44 @@ pub struct Database<'a, T> {
 /// A search along a motion.
 #[derive(Debug)]
 pub struct Walk<T> {
+    /// How many are sought.
+    count: usize,
     trust: Trust,
+    /// As many as are gone out from.
     best: Best<T>,
     probe: Probe<T>,
-    /// The nearest of the frame before.
+    /// Those of the frame before.
     before: Vec<usize>,
     /// Frames since the last full search; `None`: there was none.
     since: Option<usize>,
     /// The least squared distance to the last of the nearest since the last full search.
     least: T,
-    /// A bit for each pose that is a candidate of this frame.
+    /// A bit for each pose that was measured in this frame.
     seen: Vec<u64>,
+    /// A bit for each whose neighbours were.
+    left: Vec<u64>,
+    /// Where there are such bits.
+    touched: Vec<usize>,
     firsts: Vec<u32>,
     squares: Vec<T>,
 }
 
 impl<T: Real> Walk<T> {
-    /// A search for the `count` nearest segments in each frame.
+    /// A search for the `count` nearest segments in each frame, which goes out from the `breadth` nearest that it knows, at least
+    /// `count`.
     #[must_use]
-    pub fn new(count: usize, trust: Trust) -> Self {
+    pub fn new(count: usize, breadth: usize, trust: Trust) -> Self {
         Self {
+            count,
             trust,
-            best: Best::new(count),
+            best: Best::new(breadth.max(count)),
             probe: Probe::new(&[]),
             before: Vec::new(),
             since: None,
             least: T::ZERO,
             seen: Vec::new(),
+            left: Vec::new(),
+            touched: Vec::new(),
             firsts: Vec::new(),
             squares: Vec::new(),
         }
@@ -70,7 +84,8 @@ impl<T: Real> Walk<T> {
         self.since = None;
     }
 
-    /// Finds the segments that are nearest to `query`, `(length, dims)` in C order, but for those that are `excluded`.
+    /// Finds the segments that are nearest to `query`, `(length, dims)` in C order, but for those that are `excluded`: the first of
+    /// those that are returned.
     ///
     /// Says whether there was a full search.
     ///
@@ -92,20 +107,19 @@ impl<T: Real> Walk<T> {
         }
         let walked = self.since.is_some_and(|since| since < self.trust.frames);
         if walked {
-            self.gather(database, excluded);
+            self.go(database, excluded);
         }
         let ratio = T::from_f64(self.trust.ratio);
         let trusted = walked
             && self
-                .best
-                .limit()
+                .last()
                 .is_some_and(|square| !ratio.is_finite() || square.sqrt() <= self.least.sqrt() * ratio);
         if !trusted {
             let made = index.query(query, segments.dims(), excluded.clone());
             let bests = std::slice::from_mut(&mut self.best);
             index.search(segments, &[made], bests, &mut self.squares);
         }
-        if let Some(square) = self.best.limit() {
+        if let Some(square) = self.last() {
             self.least = if trusted { self.least.min(square) } else { square };
         }
         self.since = Some(if trusted { self.since.map_or(0, |since| since + 1) } else { 0 });
@@ -114,41 +128,75 @@ impl<T: Real> Walk<T> {
         Ok((&self.best, !trusted))
     }
 
-    /// Offers the candidates that the frame before tells of.
-    fn gather(&mut self, database: Database<'_, T>, excluded: &Range<usize>) {
-        let Database { segments, graph, .. } = database;
-        let words = segments.poses().div_ceil(64);
-        if self.seen.len() != words {
-            self.seen = vec![0; words];
+    /// The squared distance of the last of those that are sought.
+    fn last(&self) -> Option<T> {
+        self.best.found().get(self.count.checked_sub(1)?).map(|last| last.0)
+    }
+
+    /// Goes out from what the frame before tells of, from the nearest that is known to its neighbours, as long as that leads nearer.
+    fn go(&mut self, database: Database<'_, T>, excluded: &Range<usize>) {
+        let words = database.segments.poses().div_ceil(64);
+        for bits in [&mut self.seen, &mut self.left] {
+            bits.resize(words, 0);
         }
+        self.touched.clear();
         self.firsts.clear();
-        let first = segments.length() - 1;
-        let (seen, firsts) = (&mut self.seen, &mut self.firsts);
-        let mut see = |end: usize| {
-            let (word, bit) = (end / 64, 1 << (end % 64));
-            if segments.contains(end) && seen[word] & bit == 0 && !excluded.contains(&end) {
-                seen[word] |= bit;
-                // Those of a graph fit.
-                firsts.extend(u32::try_from(end - first));
-            }
-        };
-        for &before in &self.before {
-            for end in [before, before + 1] {
-                see(end);
-                for neighbor in graph.of(end) {
-                    see(neighbor);
-                }
-            }
+        let before = std::mem::take(&mut self.before);
+        for &end in &before {
+            self.see(database.segments, excluded, end);
+            self.see(database.segments, excluded, end + 1);
         }
+        self.before = before;
+        self.measure(database.segments);
+        let mut at = 0;
+        while let Some(&(_, end)) = self.best.found().get(at) {
+            let (word, bit) = (end / 64, 1 << (end % 64));
+            if self.left[word] & bit != 0 {
+                at += 1;
+                continue;
+            }
+            self.left[word] |= bit;
+            let beside = [end.checked_sub(1), Some(end + 1)].into_iter().flatten();
+            for neighbor in beside.chain(database.graph.of(end)) {
+                self.see(database.segments, excluded, neighbor);
+            }
+            // All before this one have been left; what came in before it has not.
+            at = at.min(self.measure(database.segments));
+        }
+        for &end in &self.touched {
+            self.seen[end / 64] = 0;
+            self.left[end / 64] = 0;
+        }
+    }
+
+    /// Takes note of a candidate, unless it was seen in this frame.
+    fn see(&mut self, segments: &Segments<'_, T>, excluded: &Range<usize>, end: usize) {
+        let (word, bit) = (end / 64, 1 << (end % 64));
+        if segments.contains(end) && self.seen[word] & bit == 0 && !excluded.contains(&end) {
+            self.seen[word] |= bit;
+            self.touched.push(end);
+            // Those of a graph fit.
+            self.firsts.extend(u32::try_from(end + 1 - segments.length()));
+        }
+    }
+
+    /// Offers the candidates that were seen last, and says where the first of them that is among the nearest lies.
+    fn measure(&mut self, segments: &Segments<'_, T>) -> usize {
         // In the order of the memory.
         self.firsts.sort_unstable();
         self.squares.clear();
         self.squares.resize(self.firsts.len(), T::ZERO);
         kernels::scattered(segments, &self.firsts, &self.probe, &mut self.squares);
-        for (&begin, square) in self.firsts.iter().zip(&self.squares) {
-            let end = begin as usize + first;
-            self.seen[end / 64] &= !(1 << (end % 64));
-            self.best.offer(*square, end);
+        let mut least: Option<(T, usize)> = None;
+        for (&first, &square) in self.firsts.iter().zip(&self.squares) {
+            let end = first as usize + segments.length() - 1;
+            self.best.offer(square, end);
+            if square.is_finite() && least.is_none_or(|(other, _)| square < other) {
+                least = Some((square, end));
+            }
         }
+        self.firsts.clear();
+        let found = self.best.found();
+        least.map_or(found.len(), |least| found.partition_point(|&one| one < least))
     }
 }
