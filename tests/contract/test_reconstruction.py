@@ -84,8 +84,9 @@ def test_a_database_of_short_clips():
     [
         ({"positions": np.zeros((4, 3, 3))}, ValueError, r"positions: expected shape \(frames, 4, 3\), got \(4, 3, 3\)"),
         ({"positions": np.zeros((4, 3))}, ValueError, r"positions: expected shape \(frames, 4, 3\), got \(4, 3\)"),
-        ({"positions": np.zeros((4, 4, 2))}, ValueError, r"positions: expected shape \(..., 3\), got \(4, 4, 2\)"),
-        ({"positions": np.zeros((0, 4, 3))}, ValueError, "positions: expected at least one control point that is seen, got none"),
+        ({"positions": np.zeros((4, 4, 2))}, ValueError, r"positions: expected shape \(frames, 4, 3\), got \(4, 4, 2\)"),
+        ({"positions": []}, ValueError, r"positions: expected shape \(frames, 4, 3\), got \(0,\)"),
+        ({"positions": np.zeros((0, 4, 3))}, ValueError, "positions: expected at least one frame, got none"),
         ({"positions": np.full((4, 4, 3), np.nan)}, ValueError, "positions: expected at least one control point that is seen, got none"),
         ({"fps": 0}, ValueError, "fps: expected a number above 0, got 0"),
         ({"orientations": np.ones((4, 3, 4)) / 2}, ValueError, r"orientations: expected shape \(4, 4, 4\) as of the positions, got \(4, 3, 4\)"),

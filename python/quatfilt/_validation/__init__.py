@@ -6,6 +6,7 @@ Arrays leave this package native, C-contiguous, aligned, float32 or float64, and
 from quatfilt._validation.arrays import floats, pair, quaternions, scalar_order, vectors
 from quatfilt._validation.choices import choice, known, switch
 from quatfilt._validation.confidences import confidence, pose_confidence
+from quatfilt._validation.control_points import control_points
 from quatfilt._validation.frame_times import times, times_within
 from quatfilt._validation.geodesics import centred, scores
 from quatfilt._validation.graphs import graph
@@ -25,6 +26,7 @@ __all__ = [
     "choice",
     "clip",
     "confidence",
+    "control_points",
     "features",
     "floats",
     "frequencies",

@@ -192,7 +192,8 @@ class MotionReconstructor:
         Parameters
         ----------
         positions : array_like, shape (frames, points, 3), units of `skeleton`
-            Where the control points are, in the order of `control_points`. NaN where one is not seen.
+            Where the control points are, in the order of `control_points`. A point of which a coordinate is NaN is not seen; infinite
+            coordinates are refused.
         fps : float, hertz
             Frame rate of the trajectories. They are interpolated to the rate of the database, and the poses back.
         orientations : array_like or None, shape (frames, points, 4), default None

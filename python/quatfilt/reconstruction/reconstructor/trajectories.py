@@ -89,12 +89,9 @@ def checked(
     Raises
     ------
     ValueError
-        If the shapes do not fit each other.
+        If the shapes do not fit each other, or a position is infinite.
     """
-    frames = "" if one else "frames, "
-    array = _validation.vectors(positions, "positions")
-    if array.shape[-2:] != (points, 3) or array.ndim != (2 if one else 3):
-        raise ValueError(f"positions: expected shape ({frames}{points}, 3), got {array.shape}")
+    array = _validation.control_points(positions, "positions", points, one=one)
     rows = array.reshape(-1, points, 3)
     trust = _trust(confidence, rows.shape[:2], one=one)
     known: Mask = np.logical_and.reduce(np.isfinite(rows), axis=2)
