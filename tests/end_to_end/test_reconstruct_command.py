@@ -75,6 +75,10 @@ def test_of_a_motion_with_its_error(files, tmp_path):
         ),
         (["--points", "points.csv", "--joints", "Head"], "--joints: expected with --motion"),
         (["--points", "points.csv", "--fps", 0], "fps: expected a number above 0, got 0.0"),
+        (
+            ["--points", "points.csv", "--fps", 0.001],
+            "fps: expected from 0.6 to 6000 hertz, for the database has 60, got 0.001",
+        ),
         (["--points", "none.csv"], "none.csv: No such file or directory"),
         (["--points", "points.csv", "--model", "magic"], "model: expected one of 'local_regression'"),
     ],

@@ -67,6 +67,18 @@ def same_motion(result, expected, *, rotations=tolerances.ALGEBRA_FLOAT32):
     np.testing.assert_allclose(result.positions() * unit, places, rtol=0, atol=1e-5 * scale)
 
 
+def test_a_frame_rate_that_would_fill_the_memory_is_refused(tmp_path):
+    slow = walk(seconds=1).replace(fps=0.001)
+    with pytest.raises(ValueError, match=r"fps: expected at most 0\.1 hertz, for crawl has 0\.001, got 60"):
+        qf.MotionDatabase.from_motions([slow], clip_names=["crawl"])
+    with pytest.raises(ValueError, match=r"fps: expected at most 12000 hertz, for 0 has 120, got 1e\+09"):
+        qf.MotionDatabase.from_motions([walk(seconds=1)], fps=1e9)
+    qf.write_motion(tmp_path / "a.npz", walk(seconds=1))
+    with pytest.raises(ValueError, match=r"fps: expected at most 0\.1 hertz, for a has 0\.001, got 60"):
+        qf.MotionDatabase.from_folders(tmp_path, source_fps=0.001)
+    assert len(qf.MotionDatabase.from_motions([walk(seconds=60)], fps=0.5)) == 30
+
+
 def test_clips_come_back(backend):
     del backend
     walks = [walk(seconds=2, seed=seed) for seed in range(3)]

@@ -18,6 +18,7 @@ from quatfilt._validation.numbers import integer, interval, number, odd
 from quatfilt._validation.pose_rows import features, queries, ranges, starts
 from quatfilt._validation.poses import clip, pose
 from quatfilt._validation.randomness import generator
+from quatfilt._validation.rates import resampling
 from quatfilt._validation.segments import joint_weights, root_steps, segments
 from quatfilt._validation.skeletons import offsets, parents, posed
 
@@ -51,6 +52,7 @@ __all__ = [
     "quaternions",
     "queries",
     "ranges",
+    "resampling",
     "root_steps",
     "scalar_order",
     "scores",

@@ -90,7 +90,7 @@ class MotionDatabase:
         motions : iterable of Motion
             Clips of the same joints, in any order of the joints, at any frame rate and in any unit.
         fps : float, hertz, default 60
-            Frame rate of the database.
+            Frame rate of the database, at most a hundred times that of a clip.
         mirror : bool, default False
             Whether the mirror image of every clip is added: left and right joints, told by their names, change places.
         up : {"x", "y", "z"}, default "y"
@@ -113,7 +113,7 @@ class MotionDatabase:
         Raises
         ------
         ValueError
-            If the joints differ, nothing is left, or with ``mirror=True`` left and right are not to be found.
+            If the joints differ, the frame rate is too high, nothing is left, or with ``mirror=True`` left and right are not to be found.
         TypeError
             If one of the motions is none.
         """

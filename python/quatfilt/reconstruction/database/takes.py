@@ -93,8 +93,9 @@ def takes(motion: Motion, name: str, body: Body, how: How, notes: list[str]) -> 
     Raises
     ------
     ValueError
-        If the motion has other joints than the body.
+        If the motion has other joints than the body, or so low a frame rate that it would grow a hundredfold.
     """
+    _validation.resampling(how.fps, "fps", motion.fps, name, faster=True)
     order, skeleton = body.arranged(motion.skeleton, name)
     if motion.joint_translations is not None:
         skeleton = _standing(motion, order, skeleton, name, notes)

@@ -195,7 +195,8 @@ class MotionReconstructor:
             Where the control points are, in the order of `control_points`. A point of which a coordinate is NaN is not seen; infinite
             coordinates are refused.
         fps : float, hertz
-            Frame rate of the trajectories. They are interpolated to the rate of the database, and the poses back.
+            Frame rate of the trajectories. They are interpolated to the rate of the database, and the poses back. At most a hundred
+            times as high or as low as that.
         orientations : array_like or None, shape (frames, points, 4), default None
             Global rotations of the control points, unit quaternions, scalar first: what multiplies a joint's way from the
             rest pose to the world. NaN or zeros where they are not known.
@@ -222,7 +223,9 @@ class MotionReconstructor:
         a new start.
         """
         seen, dtype = trajectories.checked(positions, orientations, confidence, len(self._examples.points))
-        rate = _validation.number(fps, "fps", above=0)
+        rate = _validation.resampling(
+            _validation.number(fps, "fps", above=0), "fps", self._examples.database.fps, "the database"
+        )
         if not (seen.position_weights > 0).any():
             raise ValueError("positions: expected at least one control point that is seen, got none")
         units.check(seen, self._examples)
