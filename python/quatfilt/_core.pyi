@@ -10,6 +10,7 @@ __all__ = [
     "MotionTracker",
     "PoseStream",
     "SegmentWalk",
+    "TrackerTables",
     "bilateral",
     "bilateral_stream",
     "body_geodesics",
@@ -418,6 +419,11 @@ def track_stream(
     initial: tuple[NDArray[np.float64], NDArray[np.float64], float] | None,
     /,
 ) -> MotionTracker: ...
+
+@final
+class TrackerTables:
+    def __new__(cls) -> TrackerTables: ...
+    def __reduce__(self, /) -> tuple[type[TrackerTables], tuple[()]]: ...
 
 @final
 class MotionTracker:

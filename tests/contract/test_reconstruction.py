@@ -104,6 +104,20 @@ def test_trajectories_that_are_refused(arguments, kind, message):
         reconstructor().reconstruct(**{"positions": positions(), "fps": 60, **arguments})
 
 
+@pytest.mark.parametrize("value", [np.inf, -np.inf])
+def test_a_point_at_infinity_is_refused(value):
+    points = positions().copy()
+    points[0, 0] = np.nan
+    points[2, 3, 1] = value
+    expected = f"positions: expected finite numbers, or NaN where a point is not seen, got {value} at "
+    with pytest.raises(ValueError, match=f"{expected}frame 2, point 3"):
+        reconstructor().reconstruct(points, fps=60)
+    stream, other = reconstructor().stream(), reconstructor().stream()
+    with pytest.raises(ValueError, match=f"{expected}point 3"):
+        stream.push(points[2])
+    np.testing.assert_array_equal(stream.push(points[1]).rotations, other.push(points[1]).rotations)
+
+
 def test_initial_of_other_joints_or_without_frames():
     other = qf.Motion(
         np.tile([1.0, 0, 0, 0], (2, 1, 1)), fps=60, skeleton=qf.Skeleton(["a"], [-1], [[0, 0, 0]])
@@ -225,6 +239,20 @@ def test_stream_refuses_and_goes_on():
             TypeError, match="ReconstructionStream: a stream can neither be pickled nor copied"
         ):
             change(stream)
+
+
+def test_trackers_share_what_they_make_of_the_poses():
+    one, other = reconstructor(), reconstructor(control_points=walkers.JOINTS[:3])
+    points = positions()
+    first = one.reconstruct(points, fps=60).rotations
+    np.testing.assert_array_equal(one.reconstruct(points, fps=60).rotations, first)
+    np.testing.assert_array_equal(one.stream().push(points[0]).rotations, first[0])
+    for copied in (copy.deepcopy(one), pickle.loads(pickle.dumps(one))):  # noqa: S301
+        np.testing.assert_array_equal(copied.reconstruct(points, fps=60).rotations, first)
+    # They were made, for those of other points do not fit.
+    vars(other._examples)["tables"] = one._examples.tables
+    with pytest.raises(ValueError, match="tables: expected those of the same poses and options"):
+        other.reconstruct(points[:, :3], fps=60)
 
 
 def test_streams_in_threads():

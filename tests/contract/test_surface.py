@@ -14,6 +14,7 @@ ONLY_IN_CORE = {
     "MotionTracker": STREAMS,
     "PoseStream": STREAMS,
     "SegmentWalk": "what `segment_walk` returns",
+    "TrackerTables": "what trackers of the core share; the reference keeps nothing",
     "bilateral_stream": STREAMS,
     "get_num_threads": "the reference has no threads",
     "is_debug_build": "the reference is not built",

@@ -83,7 +83,7 @@ mod _core {
     #[pymodule_export]
     use super::reconstruction::solver::solve_pose;
     #[pymodule_export]
-    use super::reconstruction::tracker::{MotionTracker, track, track_stream};
+    use super::reconstruction::tracker::{MotionTracker, TrackerTables, track, track_stream};
     #[pymodule_export]
     use super::rotations::continuity::continuous;
     #[pymodule_export]

@@ -33,6 +33,8 @@ class Poses(NamedTuple):
         How much joints count in them.
     graph : array (poses, degree) of int32 or None
         Neighbours of the poses, −1 where there are fewer.
+    tables : object
+        What kernels keep from call to call; nothing depends on it.
     """
 
     rotations: NDArray[np.float32]
@@ -44,6 +46,7 @@ class Poses(NamedTuple):
     mean_rotations: Floats
     joint_weights: Floats
     graph: NDArray[np.int32] | None
+    tables: object = None
 
     def feature(self, pose: Floats) -> Floats:
         """Return a pose as a vector."""

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from quatfilt._backend import ops
+from quatfilt._backend import ops, streams
 from quatfilt.motion.skeleton import Skeleton
 from quatfilt.reconstruction.database import MotionDatabase
 from quatfilt.reconstruction.database.weights import reaches
@@ -78,8 +78,13 @@ class Examples:
         step = max(1, len(self.database) // POSES_MEASURED)
         return extent(self.trails[::step], self.database.up)
 
+    @cached_property
+    def tables(self) -> Any:
+        """What kernels make of the poses at their first frame, and share from then on; empty in a copy."""
+        return streams().TrackerTables()
+
     @property
-    def arrays(self) -> tuple[NDArray[Any] | None, ...]:
+    def arrays(self) -> tuple[Any, ...]:
         """What the kernels take."""
         db = self.database
         return (
@@ -92,6 +97,7 @@ class Examples:
             db.mean_rotations,
             db.joint_weights,
             db.graph,
+            self.tables,
         )
 
 

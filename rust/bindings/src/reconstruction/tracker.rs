@@ -6,20 +6,21 @@ use crate::reconstruction::solver::{array, body};
 use numpy::{PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 use quatfilt_core::Error;
 use quatfilt_core::parallel::Interrupt;
 use quatfilt_core::reconstruction::kinematics::{Body, WAY};
 use quatfilt_core::reconstruction::solver::Targets;
-use quatfilt_core::reconstruction::tracker::{Options, Poses, State, Tracker};
+use quatfilt_core::reconstruction::tracker::{Options, Poses, State, Tables, Tracker};
 use quatfilt_core::search::poses::graph::Graph;
 use quatfilt_core::search::poses::walk::Trust;
-use std::sync::{Mutex, TryLockError};
+use std::sync::{Arc, Mutex, TryLockError};
 
 /// Nanoseconds that a frame takes beside the search, by which it is decided whether to listen for Ctrl-C.
 const FRAME: usize = 500_000;
 
-/// The arrays of a database: rotations, heading, translation, trails, starts, features, mean rotations, joint weights, and the graph or
-/// none.
+/// The arrays of a database: rotations, heading, translation, trails, starts, features, mean rotations, joint weights, the graph or
+/// none, and the tables that trackers share, or none.
 type Arrays<'py> = (
     Bound<'py, PyAny>,
     Bound<'py, PyAny>,
@@ -30,7 +31,31 @@ type Arrays<'py> = (
     Bound<'py, PyAny>,
     Bound<'py, PyAny>,
     Option<Bound<'py, PyAny>>,
+    Option<Bound<'py, TrackerTables>>,
 );
+
+/// What trackers of the same arrays, options and control points share.
+#[pyclass(frozen, module = "quatfilt._core")]
+pub(crate) struct TrackerTables(Arc<Tables>);
+
+#[pymethods]
+impl TrackerTables {
+    /// Empty ones, which the first frame of a tracker fills.
+    #[new]
+    fn new() -> Self {
+        Self(Arc::default())
+    }
+
+    /// A copy is empty.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, ()) {
+        (slf.get_type(), ())
+    }
+}
+
+/// The tables that trackers share, or some of its own.
+fn tables(poses: &Arrays<'_>) -> Arc<Tables> {
+    poses.9.as_ref().map_or_else(Arc::default, |tables| Arc::clone(&tables.get().0))
+}
 
 /// Order, neighbors, stride, spacing, window, scale, patience, floor, steps, refresh and ratio.
 type How = (usize, usize, usize, usize, Vec<usize>, f64, usize, [f64; 1 + WAY], usize, usize, f64);
@@ -54,8 +79,18 @@ struct Borrowed<'py> {
 
 impl<'py> Borrowed<'py> {
     fn new(arrays: &Arrays<'py>) -> PyResult<Self> {
-        let (rotations, heading, translation, trails, starts, features, mean_rotations, joint_weights, graph) =
-            arrays;
+        let (
+            rotations,
+            heading,
+            translation,
+            trails,
+            starts,
+            features,
+            mean_rotations,
+            joint_weights,
+            graph,
+            _,
+        ) = arrays;
         Ok(Self {
             small: [
                 input("rotations", rotations)?,
@@ -96,7 +131,13 @@ fn graph<'a>(array: &'a PyReadonlyArrayDyn<'_, i32>) -> PyResult<Graph<'a>> {
 }
 
 /// A tracker of a body, with its options.
-fn tracker(body: Body, how: How, model: &Model, initial: Option<Initial<'_>>) -> PyResult<Tracker> {
+fn tracker(
+    body: Body,
+    how: How,
+    model: &Model,
+    initial: Option<Initial<'_>>,
+    tables: Arc<Tables>,
+) -> PyResult<Tracker> {
     let (order, neighbors, stride, spacing, window, scale, patience, floor, steps, frames, ratio) = how;
     let (name, target, deviation, bandwidth, ridge, share) = model;
     let model = local_models::options(name, target, deviation, *bandwidth, *ridge, *share)?;
@@ -118,7 +159,7 @@ fn tracker(body: Body, how: How, model: &Model, initial: Option<Initial<'_>>) ->
             Ok::<_, PyErr>(State { recent: numbers("initial", &recent)?, place, heading })
         })
         .transpose()?;
-    Tracker::new(body, options, state).map_err(to_python)
+    Tracker::new(body, options, state, tables).map_err(to_python)
 }
 
 /// Rotations `(frames, joints, 4)`, translation `(frames, 3)` and energies `(frames, 2)` of the motion that follows
@@ -150,7 +191,7 @@ pub(crate) fn track<'py>(
 ) -> PyResult<Tracked> {
     let body = body(parents, offsets, points, up)?;
     let (joints, points) = (body.joints(), body.points());
-    let mut tracker = tracker(body, options, &model, initial)?;
+    let mut tracker = tracker(body, options, &model, initial, tables(&poses))?;
     let borrowed = Borrowed::new(&poses)?;
     let poses = borrowed.poses()?;
     let positions = input::<f64>("positions", positions)?;
@@ -209,8 +250,9 @@ pub(crate) fn track_stream<'py>(
     model: Model,
     initial: Option<Initial<'py>>,
 ) -> PyResult<MotionTracker> {
-    let tracker = tracker(body(parents, offsets, points, up)?, options, &model, initial)?;
-    let (a, b, c, d, e, f, g, h, graph) = poses;
+    let body = body(parents, offsets, points, up)?;
+    let tracker = tracker(body, options, &model, initial, tables(&poses))?;
+    let (a, b, c, d, e, f, g, h, graph, _) = poses;
     let poses = [a, b, c, d, e, f, g, h].map(Bound::unbind);
     Ok(MotionTracker { poses, graph: graph.map(Bound::unbind), tracker: Mutex::new(tracker) })
 }
@@ -238,7 +280,7 @@ impl MotionTracker {
     ) -> PyResult<Tracked> {
         let [a, b, c, d, e, f, g, h] = self.poses.each_ref().map(|array| array.bind(py).clone());
         let graph = self.graph.as_ref().map(|array| array.bind(py).clone());
-        let borrowed = Borrowed::new(&(a, b, c, d, e, f, g, h, graph))?;
+        let borrowed = Borrowed::new(&(a, b, c, d, e, f, g, h, graph, None))?;
         let poses = borrowed.poses()?;
         let positions = numbers("positions", positions)?;
         let position_deviations = numbers("position_deviations", position_deviations)?;

@@ -5,11 +5,13 @@ mod poses;
 mod recent;
 mod search;
 mod sight;
+mod tables;
 mod trails;
 mod walk;
 mod within;
 
 pub use poses::Poses;
+pub use tables::Tables;
 
 use super::frame::{HORIZONTAL, heading, turn, turned};
 use super::kinematics::{Base, Body, WAY};
@@ -25,6 +27,8 @@ use recent::Recent;
 use search::{Example, Query};
 use sight::Sight;
 use std::collections::VecDeque;
+use std::sync::Arc;
+use tables::Shape;
 use trails::Trails;
 use walk::Walk;
 use within::within;
@@ -89,19 +93,25 @@ pub struct Tracker {
     /// Frames since a control point was seen.
     blind: usize,
     sight: Sight,
-    /// What does not depend on the frame, once it is known.
-    candidates: Option<(Lattice, Trails)>,
+    /// What does not depend on the frame.
+    tables: Arc<Tables>,
     walk: Walk,
     /// A bit for each pose of the database.
     bits: Vec<u64>,
 }
 
 impl Tracker {
-    /// A tracker of one body; without a state it starts from the pose of the database that fits the first frame best.
+    /// A tracker of one body; without a state it starts from the pose of the database that fits the first frame best. Trackers of the same
+    /// body, options and poses may share their `tables`, which are empty at first.
     ///
     /// # Errors
     /// [`Error::Length`] and [`Error::Parameter`] if options and state are not of the body.
-    pub fn new(body: Body, options: Options, state: Option<State>) -> Result<Self, Error> {
+    pub fn new(
+        body: Body,
+        options: Options,
+        state: Option<State>,
+        tables: Arc<Tables>,
+    ) -> Result<Self, Error> {
         if options.order == 0 || options.neighbors == 0 || !options.window.contains(&0) {
             return Err(Error::Parameter { name: "options", expected: "an order, neighbors, and a window" });
         }
@@ -115,7 +125,7 @@ impl Tracker {
             past: VecDeque::new(),
             blind: 0,
             sight: Sight::default(),
-            candidates: None,
+            tables,
             walk: Walk::default(),
             bits: Vec::new(),
         })
@@ -156,16 +166,16 @@ impl Tracker {
             }
         }
         self.sight.finish();
-        let candidates = if let Some(candidates) = self.candidates.take() {
-            candidates
-        } else {
-            let lattice = Lattice::new(poses, self.before(), self.options.stride.max(1))?;
-            let trails = Trails::new(poses, &lattice, &self.options.window, points, up);
-            (lattice, trails)
+        let tables = Arc::clone(&self.tables);
+        let shape = Shape {
+            before: self.before(),
+            stride: self.options.stride.max(1),
+            window: &self.options.window,
+            points,
+            up,
         };
-        let result = self.reach(poses, &candidates, seen, missing, interrupt);
-        self.candidates = Some(candidates);
-        let (pose, state, walk) = result?;
+        let candidates = tables.of(poses, shape)?;
+        let (pose, state, walk) = self.reach(poses, candidates, seen, missing, interrupt)?;
         self.walk = walk;
         self.state = Some(follow(state, &pose, up));
         self.blind = if missing { self.blind + 1 } else { 0 };

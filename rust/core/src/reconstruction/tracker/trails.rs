@@ -33,6 +33,11 @@ impl Trails {
         trails
     }
 
+    /// Whether they are of these points in these frames.
+    pub(super) fn are_of(&self, window: &[usize], points: usize, up: usize) -> bool {
+        self.window == window && self.points == points && self.up == up
+    }
+
     pub(super) fn points(&self) -> usize {
         self.points
     }
