@@ -145,6 +145,11 @@ def test_a_library_is_a_clip_or_a_list_of_clips():
     np.testing.assert_array_equal(np.roll(qf.denoise(last[0], **chain), 1, axis=-1), result)
     single = qf.nonlocal_pose_means(q[:, 0], library=other[:, 0])
     np.testing.assert_array_equal(single, qf.nonlocal_pose_means(q[:, :1], library=other[:, :1])[:, 0])
+    np.testing.assert_array_equal(qf.nonlocal_pose_means(q[:, 0], library=other[:, 0].tolist()), single)
+    np.testing.assert_array_equal(
+        qf.nonlocal_pose_means(q, library=other.tolist()), qf.nonlocal_pose_means(q, library=other)
+    )
+    np.testing.assert_array_equal(qf.nonlocal_pose_means(q, library=[other.tolist(), q.tolist()]), result)
     gaps = q.copy()
     gaps[10:15, 1] = np.nan
     gaps[20:, 2] = np.nan

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -281,6 +282,35 @@ def test_bad_input_is_one_line_and_nothing_is_written(folder, words, message, ca
     assert said.err.count("\n") == 1
     assert message in said.err
     assert sorted(folder.rglob("*")) == before
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["denoise", "noisy.bvh", "-o", "notes.txt/out.bvh"],
+        ["denoise", "noisy.bvh", "-o", "nowhere/out.bvh"],
+        ["denoise", "noisy.bvh", "-o", "out.bvh", "--report", "nowhere/out.png"],
+        ["denoise", "noisy.bvh", "-o", "out.bvh", "--report", "nowhere/out.json"],
+        ["pga", "truth.bvh", "-o", "nowhere/out.png"],
+        ["pga", "truth.bvh", "-o", "notes.txt/out.svg"],
+        ["segment", "truth.bvh", "--picture", "nowhere/out.png"],
+        ["database", "build", "truth.bvh", "-o", "nowhere/out.db"],
+        ["database", "build", "truth.bvh", "-o", "nowhere/out.db", "--graph"],
+        ["evaluate", "pga-figs", "--seeds", "1", "-o", "notes.txt/out"],
+        ["demo", "-o", "notes.txt/out"],
+        ["batch", "truth.bvh", "-o", "notes.txt/out"],
+    ],
+)
+def test_a_place_that_cannot_be_written_is_named(folder, words, tmp_path, capsys, monkeypatch):
+    for name in ("noisy.bvh", "truth.bvh", "notes.txt"):
+        (tmp_path / name).write_bytes((folder / name).read_bytes())
+    monkeypatch.chdir(tmp_path)
+    assert main(words) == 2
+    said = capsys.readouterr().err
+    place = re.escape(words[-1] if words[-1] != "--graph" else words[-2])
+    assert re.fullmatch(
+        rf"quatfilt: {place}(/\S+)?: (No such (file or )?directory|Not a directory)\n", said
+    ), said
 
 
 def test_bad_input_of_the_process(folder):

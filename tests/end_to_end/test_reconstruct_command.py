@@ -71,7 +71,7 @@ def test_of_a_motion_with_its_error(files, tmp_path):
         (["--motion", "walk.bvh"], "--joints: expected the control points of --motion, got none"),
         (
             ["--motion", "walk.bvh", "--joints", "LeftWirst"],
-            "control_points: expected joints of the database, got 'LeftWirst'; close to it: LeftWrist, ",
+            "--joints: expected joints of the database, got 'LeftWirst'; close to it: LeftWrist, ",
         ),
         (["--points", "points.csv", "--joints", "Head"], "--joints: expected with --motion"),
         (["--points", "points.csv", "--fps", 0], "fps: expected a number above 0, got 0.0"),

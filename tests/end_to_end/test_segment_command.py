@@ -68,7 +68,7 @@ def test_a_picture_is_drawn(path, tmp_path, capsys, monkeypatch):
             "window: expected at least 0.0166667 seconds, 2 frames at fps = 120, got 0.01",
         ),
         (["--threshold", "-1"], "threshold: expected a number of at least 0, got -1"),
-        (["--components", "3"], "n_components: expected an integer of at least 1 and at most 2, got 3"),
+        (["--components", "3"], "--components: expected an integer of at least 1 and at most 2, got 3"),
     ],
 )
 def test_bad_input_is_one_line(path, words, message, capsys):

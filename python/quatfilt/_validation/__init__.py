@@ -15,6 +15,7 @@ from quatfilt._validation.joints import frequencies, per_joint
 from quatfilt._validation.libraries import library
 from quatfilt._validation.masks import mask
 from quatfilt._validation.numbers import integer, interval, number, odd
+from quatfilt._validation.paths import path
 from quatfilt._validation.pose_rows import features, queries, ranges, starts
 from quatfilt._validation.poses import clip, pose
 from quatfilt._validation.randomness import generator
@@ -45,6 +46,7 @@ __all__ = [
     "offsets",
     "pair",
     "parents",
+    "path",
     "per_joint",
     "pose",
     "pose_confidence",

@@ -19,7 +19,7 @@ def library(value: Any, like: Array, *, scalar_first: bool) -> tuple[Array | Non
     if value is None:
         return None, []
     named = {"library": value}
-    if isinstance(value, (list, tuple)):
+    if isinstance(value, (list, tuple)) and not _is_clip(value, like.shape[1]):
         named = {f"library[{i}]": one for i, one in enumerate(value)}
         if not named:
             raise ValueError("library: expected a clip or a list of at least one, got none")
@@ -31,3 +31,13 @@ def library(value: Any, like: Array, *, scalar_first: bool) -> tuple[Array | Non
         clips.append(array.astype(like.dtype, copy=False))
     together = np.concatenate(clips) if len(clips) > 1 else clips[0]
     return np.ascontiguousarray(together), [len(one) for one in clips]
+
+
+def _is_clip(value: list[Any] | tuple[Any, ...], joints: int) -> bool:
+    """Tell whether nested lists are the numbers of a single clip, and not several clips of a joint each."""
+    shape: list[int] = []
+    part: Any = value
+    while isinstance(part, (list, tuple)) and part:
+        shape.append(len(part))
+        part = part[0]
+    return np.isscalar(part) and (shape[1:] == [joints, 4] or (joints == 1 and shape[1:] == [4]))

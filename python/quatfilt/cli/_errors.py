@@ -30,6 +30,8 @@ def explained(error: Exception) -> tuple[str, int]:
         return f"{one_line(message())} (see quatfilt --help)", OF_THE_USER
     if isinstance(error, MemoryError):
         return f"not enough memory{one_line(f': {error}') if str(error) else ''}", OF_THE_USER
+    if isinstance(error, OSError) and error.filename is not None and error.strerror:
+        return one_line(f"{error.filename}: {error.strerror}"), OF_THE_USER
     if isinstance(error, BAD_INPUT):
         return one_line(str(error) or type(error).__name__), OF_THE_USER
     return f"internal error: {one_line(repr(error))}; --debug shows where it comes from", OF_QUATFILT

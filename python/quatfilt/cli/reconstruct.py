@@ -9,6 +9,7 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
+from quatfilt import _validation
 from quatfilt.cli import _options, _output, _points
 from quatfilt.formats.files import write_motion
 from quatfilt.motion import metrics
@@ -150,10 +151,10 @@ def _of_motion(
         raise ValueError("--joints: expected the control points of --motion, got none")
     truth = _options.read(path, fps=fps, skeleton=skeleton, first_frame="auto")
     names = tuple(name.strip() for name in joints.split(","))
+    _validation.joint_names(names, "--joints", db.names)
     found = [name for name in names if name in truth.skeleton.names]
     scale = truth.skeleton.centimetres_per_unit / db.skeleton.centimetres_per_unit
     places = truth.positions()[:, [truth.skeleton.index(name) for name in found]] * scale
-    # A joint that is not there is refused by the reconstructor, which knows names close to it.
     full = np.full((len(truth), len(names), 3), np.nan)
     full[:, [names.index(name) for name in found]] = places
     return _Given(names, full, truth.fps, truth)

@@ -5,8 +5,9 @@ from typing import Annotated
 
 import typer
 
+from quatfilt import _validation
 from quatfilt.cli import _options, _output
-from quatfilt.geodesics.segment import Segments, segments
+from quatfilt.geodesics.segment import MOST_COMPONENTS, Segments, segments
 from quatfilt.motion.motion import Motion
 
 
@@ -34,12 +35,13 @@ def segment(
     json: _options.Json = False,
 ) -> None:
     """Print where one behaviour ends and another begins, in frames (from 0) and seconds."""
+    count = _validation.integer(components, "--components", at_least=1, at_most=MOST_COMPONENTS)
     with _output.busy(f"reading {path.name}"):
         motion = _options.read(path, fps=fps, skeleton=skeleton, first_frame=first_frame)
     with _output.busy("segmenting"):
         found = segments(
             motion.rotations,
-            n_components=components,
+            n_components=count,
             window=window,
             min_length=min_length,
             threshold="auto" if threshold is None else threshold,

@@ -79,7 +79,7 @@ def read_motion(
     """
     rate = None if fps is None else _validation.number(fps, "fps", above=0)
     first = _validation.choice(first_frame, "first_frame", ("auto", "keep", "drop"))
-    name = os.fspath(path)
+    name = _validation.path(path, "path")
     extension = _extension(name)
     if extension in (".asf", ".asx"):
         raise FileFormatError(name, None, "a skeleton holds no motion: read the .amc, with this as skeleton=")
@@ -95,7 +95,7 @@ def read_motion(
     if extension == ".npz":
         return npz.read(name, data, fps=rate, first_frame=first)
     if not isinstance(skeleton, Skeleton):
-        asf = acclaim.find_skeleton(name) if skeleton is None else os.fspath(skeleton)
+        asf = acclaim.find_skeleton(name) if skeleton is None else _validation.path(skeleton, "skeleton")
         skeleton = acclaim.read_skeleton(asf, read_bytes(asf))
     return acclaim.read(name, data, skeleton, fps=rate, first_frame=first)
 
@@ -140,7 +140,7 @@ def write_motion(path: PathLike, motion: Motion) -> None:
     """
     if not isinstance(motion, Motion):
         raise TypeError(f"motion: expected a Motion, got {type(motion).__name__}")
-    name = os.fspath(path)
+    name = _validation.path(path, "path")
     extension = _extension(name)
     if extension == ".bvh":
         write_bytes(name, lambda: bvh.write(name, motion))

@@ -1,6 +1,5 @@
 """Compressed rotations, in memory and in files."""
 
-import os
 import struct
 import zlib
 from dataclasses import dataclass
@@ -133,7 +132,7 @@ class Compressed:
         ...     print(qf.Compressed.load(path) == small, path.stat().st_size == small.nbytes)
         True True
         """
-        write_bytes(os.fspath(path), self._to_bytes)
+        write_bytes(_validation.path(path, "path"), self._to_bytes)
 
     @classmethod
     def load(cls, path: PathLike) -> Self:
@@ -156,7 +155,7 @@ class Compressed:
         FileAccessError
             If it cannot be read.
         """
-        name = os.fspath(path)
+        name = _validation.path(path, "path")
         data = read_bytes(name)
         if not data.startswith(_MAGIC):
             raise FileFormatError(name, None, "expected compressed rotations, got another kind of file")

@@ -14,6 +14,9 @@ from quatfilt._typing import Array
 DEVIATIONS = 3.0
 """Standard deviations above the mean, as in the paper."""
 
+MOST_COMPONENTS = 2
+"""Geodesics of a joint: three describe every rotation, and leave no error to grow."""
+
 _SECONDS = 2.0
 """Of `window`: a step or two, so that a cycle of a walk is known before a cut is looked for."""
 
@@ -142,7 +145,7 @@ def segments(
 ) -> Segments:
     """Cut a motion as `segment` does, and return what the cuts follow from too."""
     clip, _ = _validation.clip(q, "q", scalar_first=scalar_first)
-    components = _validation.integer(n_components, "n_components", at_least=1, at_most=2)
+    components = _validation.integer(n_components, "n_components", at_least=1, at_most=MOST_COMPONENTS)
     rate = _validation.number(fps, "fps", above=0)
     if window is None:
         learnt = _FRAMES if rate == 1 else max(round(_SECONDS * rate), 2)
@@ -176,4 +179,4 @@ def _frames(seconds: float, name: str, fps: float, *, at_least: int) -> int:
 _MOST_FRAMES = 1 << 40
 """Longer windows than any clip are all the same."""
 
-__all__ = ["DEVIATIONS", "Segments", "segment", "segments"]
+__all__ = ["DEVIATIONS", "MOST_COMPONENTS", "Segments", "segment", "segments"]

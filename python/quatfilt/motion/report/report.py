@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from quatfilt import _validation
 from quatfilt.evaluation._plot import figure
 from quatfilt.formats.files import write_bytes
 from quatfilt.motion.motion import Motion
@@ -98,7 +99,7 @@ class Report:
         FileAccessError
             If the file cannot be written.
         """
-        name = os.fspath(path)
+        name = _validation.path(path, "path")
         extension = check_path(name)
         if extension in _PICTURES:
             content = picture.draw(self, self.clips, extension.removeprefix("."))

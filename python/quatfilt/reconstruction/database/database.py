@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterable, Sequence
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -184,17 +184,20 @@ class MotionDatabase:
             If a folder does not exist, or `path` cannot be written.
         """
         how = How.checked(fps=fps, up=up, max_gap=max_gap, min_length=min_length)
-        places = [folders] if isinstance(folders, (str, os.PathLike)) else list(folders)
+        single = isinstance(folders, (str, os.PathLike)) or not isinstance(folders, Iterable)
+        given: Iterable[Any] = [folders] if single else folders  # type: ignore[assignment]
+        places = [_validation.path(place, "folders") for place in given]
+        target = None if path is None else _validation.path(path, "path")
         source = Folders(
             places,
             source_fps=None if source_fps is None else _validation.number(source_fps, "source_fps", above=0),
             skip_others=_validation.switch(skip_others, "skip_others"),
             workers=None if workers is None else _validation.integer(workers, "workers", at_least=1),
         )
-        if path is None:
+        if target is None:
             return cls(building.in_memory(source, how, mirror=_validation.switch(mirror, "mirror")))
-        building.to_file(source, how, os.fspath(path), mirror=_validation.switch(mirror, "mirror"))
-        return cls.open(path)
+        building.to_file(source, how, target, mirror=_validation.switch(mirror, "mirror"))
+        return cls.open(target)
 
     @classmethod
     def open(cls, path: PathLike, *, verify: bool = False) -> Self:
@@ -221,7 +224,7 @@ class MotionDatabase:
         FileAccessError
             If it cannot be read.
         """
-        return cls(file.read(os.fspath(path), verify=_validation.switch(verify, "verify")))
+        return cls(file.read(_validation.path(path, "path"), verify=_validation.switch(verify, "verify")))
 
     def save(self, path: PathLike) -> None:
         """Write the database to a file.
@@ -239,7 +242,7 @@ class MotionDatabase:
         FileAccessError
             If it cannot be written.
         """
-        file.write(os.fspath(path), self._contents, self._graph)
+        file.write(_validation.path(path, "path"), self._contents, self._graph)
 
     @property
     def names(self) -> tuple[str, ...]:
