@@ -72,6 +72,26 @@ def test_seconds_are_seconds(backend):
     assert (np.abs(coarse * 2 - cuts) <= 12).all()
 
 
+def test_a_frame_rate_moves_no_clear_cut(backend):
+    """Behaviours that differ are cut apart at the same time, whatever the frame rate; growth is that of fewer frames."""
+    phase = 2 * np.pi * np.arange(1440)[:, None, None] / 144
+    s, c = np.sin(phase), np.cos(2 * phase)
+    q = np.concatenate(
+        [
+            qf.exp(s * [[0.4, 0.0, 0.0], [0.1, 0.2, 0.0]] + c * [[0.0, 0.1, 0.0], [0.0, 0.0, 0.1]]),
+            qf.exp(s * [[0.0, 0.3, 0.05], [0.2, 0.0, 0.1]] + c * [[0.1, 0.0, 0.2], [0.0, 0.3, 0.0]]),
+        ]
+    )
+    times = [
+        backend.segment(q[::step].copy(), 1, 240 // step, 120 // step, 60 // step, 3.0) for step in (1, 2, 4)
+    ]
+    assert len(times[0][0]) > 0
+    for (cuts, growth, _), step in zip(times, (1, 2, 4), strict=True):
+        np.testing.assert_allclose(cuts * step, times[0][0], atol=8)
+        ours, theirs = step * growth[300 // step : 1200 // step], times[0][1][300:1200:step]
+        np.testing.assert_allclose(ours.mean(), theirs.mean(), rtol=0.02)
+
+
 def test_segments_are_as_long_as_they_must(backend):
     assert backend.segment
     q = clips.smooth(np.random.default_rng(6), 1500, 4)
