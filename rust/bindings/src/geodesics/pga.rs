@@ -1,12 +1,11 @@
 //! Principal geodesic analysis.
 
-use crate::array::{by_dtype, clip, elements, input, output, run_interruptible};
-use crate::filters::names::named;
-use numpy::{Element, PyArray1, PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::PyValueError;
+use super::shared::{array, descents, params, product, scores};
+use crate::array::{by_dtype, clip, elements, input, run_interruptible};
+use numpy::{Element, PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use quatfilt_core::Real;
-use quatfilt_core::geodesics::pga::{self, Component, Geodesics, Objective, Params};
+use quatfilt_core::geodesics::pga::{self, Geodesics, Params};
 
 /// Estimated nanoseconds per sample: of the centre, of a fitted geodesic, and of a parameter.
 const CENTRE_NANOSECONDS: usize = 40;
@@ -49,21 +48,8 @@ pub(crate) fn principal_geodesics(
     objective: &str,
     tolerance: f64,
 ) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
-    let params = Params { components, most, objective: objective_named(objective)?, tolerance };
+    let params = params(components, most, objective, tolerance)?;
     by_dtype!(q, T => fitted::<T>(py, q, means, params))
-}
-
-/// The objective of a name.
-pub(super) fn objective_named(name: &str) -> PyResult<Objective> {
-    named(
-        "objective",
-        name,
-        &[
-            ("geodesic", Objective::Geodesic),
-            ("squared", Objective::Squared),
-            ("chordal", Objective::Chordal),
-        ],
-    )
 }
 
 fn fitted<T: Real + Element>(
@@ -73,37 +59,19 @@ fn fitted<T: Real + Element>(
     params: Params,
 ) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
     let (q, means) = (input::<T>("q", q)?, input::<T>("means", means)?);
-    let joints = q.shape().get(1).copied().unwrap_or(0);
-    let components = {
-        let (q, means) = (clip("q", &q)?, elements("means", &means)?);
-        let geodesics = if params.components == 0 { EXPECTED } else { params.components };
-        let nanoseconds = (q.data().len() / 4 * FIT_NANOSECONDS).saturating_mul(geodesics);
-        run_interruptible(py, nanoseconds, |interrupt| pga::principal_geodesics(q, means, params, interrupt))?
-    };
-    let k = components.len();
+    let (q, means) = (clip("q", &q)?, elements("means", &means)?);
+    let geodesics = if params.components == 0 { EXPECTED } else { params.components };
+    let nanoseconds = (q.data().len() / 4 * FIT_NANOSECONDS).saturating_mul(geodesics);
+    let components = run_interruptible(py, nanoseconds, |interrupt| {
+        pga::principal_geodesics(q, means, params, interrupt)
+    })?;
+    let (k, joints) = (components.len(), q.joints());
     let all = || components.iter().flatten();
-    let steps = all().map(|component| component.descent.len()).max().unwrap_or(0);
-    let steps_of = |component: &Component| {
-        let left = steps - component.descent.len();
-        component.descent.clone().into_iter().chain(std::iter::repeat_n(f64::NAN, left)).collect::<Vec<_>>()
-    };
-    let directions = array::<T>(py, &[k, joints, 3], all().flat_map(|component| component.direction))?;
-    let residuals = array::<T>(py, &[k, joints], all().map(|component| component.residual))?;
-    let descents = array::<T>(py, &[k, joints, steps], all().flat_map(steps_of))?;
-    Ok((directions, residuals, descents))
-}
-
-/// An array of numbers, rounded to its dtype.
-pub(super) fn array<T: Real + Element>(
-    py: Python<'_>,
-    shape: &[usize],
-    numbers: impl Iterator<Item = f64>,
-) -> PyResult<Py<PyAny>> {
-    let out: Bound<'_, PyArrayDyn<T>> = output(py, shape);
-    for (out, number) in out.readwrite().as_slice_mut()?.iter_mut().zip(numbers) {
-        *out = T::from_f64(number);
-    }
-    Ok(out.into_any().unbind())
+    Ok((
+        array::<T>(py, &[k, joints, 3], all().flat_map(|component| component.direction))?,
+        array::<T>(py, &[k, joints], all().map(|component| component.residual))?,
+        descents::<T>(py, &[k, joints], all().map(|component| &component.descent[..]))?,
+    ))
 }
 
 /// Parameters `(frames, joints, k)`.
@@ -115,30 +83,13 @@ pub(crate) fn geodesic_scores(
     means: &Bound<'_, PyAny>,
     directions: &Bound<'_, PyAny>,
 ) -> PyResult<Py<PyAny>> {
-    by_dtype!(q, T => scores::<T>(py, q, means, directions))
-}
-
-fn scores<T: Real + Element>(
-    py: Python<'_>,
-    q: &Bound<'_, PyAny>,
-    means: &Bound<'_, PyAny>,
-    directions: &Bound<'_, PyAny>,
-) -> PyResult<Py<PyAny>> {
-    let (q, means) = (input::<T>("q", q)?, input::<T>("means", means)?);
-    let directions = input::<T>("directions", directions)?;
-    let k = directions.shape().first().copied().unwrap_or(0);
-    let q = clip("q", &q)?;
-    let out = output::<T>(py, &[q.frames(), q.joints(), k]);
-    {
-        let mut out = out.readwrite();
-        let out = out.as_slice_mut()?;
-        let geodesics =
-            Geodesics { means: elements("means", &means)?, directions: elements("directions", &directions)? };
-        run_interruptible(py, out.len() * SCORE_NANOSECONDS, |interrupt| {
-            pga::geodesic_scores(q, geodesics, out, interrupt)
-        })?;
-    }
-    Ok(out.into_any().unbind())
+    let shape = |frames, joints, k| vec![frames, joints, k];
+    by_dtype!(q, T => {
+        let arrays = (q, means, directions);
+        scores::<T>(py, arrays, shape, SCORE_NANOSECONDS, |q, [means, directions], out, interrupt| {
+            pga::geodesic_scores(q, Geodesics { means, directions }, out, interrupt)
+        })
+    })
 }
 
 /// Rotations `(frames, joints, 4)` of parameters `(frames, joints, k)`.
@@ -150,33 +101,10 @@ pub(crate) fn geodesic_product(
     means: &Bound<'_, PyAny>,
     directions: &Bound<'_, PyAny>,
 ) -> PyResult<Py<PyAny>> {
-    by_dtype!(scores, T => rotations::<T>(py, scores, means, directions))
-}
-
-fn rotations<T: Real + Element>(
-    py: Python<'_>,
-    scores: &Bound<'_, PyAny>,
-    means: &Bound<'_, PyAny>,
-    directions: &Bound<'_, PyAny>,
-) -> PyResult<Py<PyAny>> {
-    let (scores, means) = (input::<T>("scores", scores)?, input::<T>("means", means)?);
-    let directions = input::<T>("directions", directions)?;
-    let &[frames, joints, _] = scores.shape() else {
-        return Err(PyValueError::new_err(format!(
-            "scores: expected shape (frames, joints, k), got {:?}",
-            scores.shape()
-        )));
-    };
-    let out = output::<T>(py, &[frames, joints, 4]);
-    {
-        let mut out = out.readwrite();
-        let out = out.as_slice_mut()?;
-        let scores = elements("scores", &scores)?;
-        let geodesics =
-            Geodesics { means: elements("means", &means)?, directions: elements("directions", &directions)? };
-        run_interruptible(py, (scores.len() + out.len()) * SCORE_NANOSECONDS, |interrupt| {
-            pga::geodesic_product(scores, joints, geodesics, out, interrupt)
-        })?;
-    }
-    Ok(out.into_any().unbind())
+    by_dtype!(scores, T => {
+        let arrays = (scores, means, directions);
+        product::<T>(py, arrays, SCORE_NANOSECONDS, |scores, [means, directions], out, interrupt| {
+            pga::geodesic_product(scores, means.len() / 4, Geodesics { means, directions }, out, interrupt)
+        })
+    })
 }
