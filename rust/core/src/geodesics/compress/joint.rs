@@ -5,7 +5,9 @@ use super::bits::{Context, Reader, Writer};
 use super::chart::{self, Coordinates, Frame};
 use super::fit::{COMPONENTS, Fit};
 use super::numbers::Numbers;
-use super::series::{self, STEP, Series};
+use super::series::{self, CHECKED, STEP, Series};
+use crate::Error;
+use crate::parallel::Interrupt;
 use crate::rotations::quaternion::dot;
 
 /// What a joint is if its samples are stored as they are: 0 … 3 stands for that many coordinates in steps, 4 … 6 for floats.
@@ -75,27 +77,30 @@ impl Joint {
         valid: Vec<[f64; 4]>,
         missing: Vec<bool>,
         frames: [[[f64; 4]; 2]; 2],
-        tolerance: f64,
-        quantised: bool,
-    ) -> Self {
+        (tolerance, quantised): (f64, bool),
+        interrupt: &Interrupt,
+    ) -> Result<Self, Error> {
         if !valid.is_empty() {
             let bound =
                 (if tolerance < std::f64::consts::PI { tolerance } else { std::f64::consts::PI }) * SURE;
             let width = if tolerance >= FINE_BELOW { COARSE } else { FINE };
-            let [geodesics, surface] = frames.map(|frame| Fit::new(&valid, frame, width));
+            let [geodesics, surface] = frames;
+            let geodesics = Fit::new(&valid, geodesics, width);
+            interrupt.check()?;
+            let surface = Fit::new(&valid, surface, width);
+            interrupt.check()?;
             let fit =
                 if surface.components(bound) < geodesics.components(bound) { surface } else { geodesics };
             if fit.farthest < FARTHEST {
                 for components in fit.components(bound)..=COMPONENTS {
-                    if let Some(joint) =
-                        Self::within::<T>(&fit, bound, &valid, &missing, components, quantised)
-                    {
-                        return joint;
+                    let how = (components, quantised);
+                    if let Some(joint) = Self::within::<T>(&fit, bound, &valid, &missing, how, interrupt)? {
+                        return Ok(joint);
                     }
                 }
             }
         }
-        Self { kind: PLAIN, missing, floats: valid.into_flattened(), ..Self::default() }
+        Ok(Self { kind: PLAIN, missing, floats: valid.into_flattened(), ..Self::default() })
     }
 
     /// Takes so many coordinates; `None` if the bound does not hold.
@@ -104,9 +109,9 @@ impl Joint {
         bound: f64,
         valid: &[[f64; 4]],
         missing: &[bool],
-        components: usize,
-        quantised: bool,
-    ) -> Option<Self> {
+        (components, quantised): (usize, bool),
+        interrupt: &Interrupt,
+    ) -> Result<Option<Self>, Error> {
         let stepped = quantised && components > 0;
         let mut step = if stepped { fit.step(components, bound) } else { 0.0 };
         for _ in 0..if stepped { ATTEMPTS } else { 1 } {
@@ -114,13 +119,14 @@ impl Joint {
                 Joint { kind: components, width: fit.width, frame: fit.numbers, ..Self::default() };
             let mut s: Coordinates = Default::default();
             for (k, s) in s.iter_mut().enumerate() {
+                interrupt.check()?;
                 if k >= components {
                     s.resize(valid.len(), 0.0);
                 } else if stepped {
                     joint.step = storable(step);
                     let scale = STEP as f64 / joint.step;
                     if fit.farthest * scale >= LARGEST {
-                        return None;
+                        return Ok(None);
                     }
                     let (series, back) = series::differences(&chart::in_steps(&fit.s[k], scale));
                     joint.coded.push(series);
@@ -137,11 +143,11 @@ impl Joint {
             if joint.error <= bound {
                 joint.opposite = dot(valid[0], result[0]) < 0.0;
                 joint.missing = missing.to_vec();
-                return Some(joint);
+                return Ok(Some(joint));
             }
             step *= SHORTER;
         }
-        None
+        Ok(None)
     }
 
     /// The valid samples as they come back, continuous in sign.
@@ -186,7 +192,12 @@ impl Joint {
     }
 
     /// Codes the joint.
-    pub(super) fn write<T: Stored>(&self, writer: &mut Writer, contexts: &mut Contexts) {
+    pub(super) fn write<T: Stored>(
+        &self,
+        writer: &mut Writer,
+        contexts: &mut Contexts,
+        interrupt: &Interrupt,
+    ) -> Result<(), Error> {
         writer.plain(self.kind as u64, 3);
         let some = self.missing.contains(&true);
         writer.plain(u64::from(some), 1);
@@ -198,7 +209,7 @@ impl Joint {
             }
         }
         if self.count() == 0 && some {
-            return;
+            return Ok(());
         }
         if self.kind != PLAIN {
             writer.plain(u64::from(self.width == FINE), 1);
@@ -213,15 +224,24 @@ impl Joint {
             writer.plain(self.step.to_bits() >> (64 - STEP_BITS), STEP_BITS);
         }
         for series in &self.coded {
-            series.write(writer, &mut contexts.ahead, &mut contexts.between);
+            series.write(writer, &mut contexts.ahead, &mut contexts.between, interrupt)?;
         }
-        for &float in &self.floats {
-            writer.plain(T::from_f64(float).to_plain(), T::BITS);
+        for floats in self.floats.chunks(CHECKED) {
+            interrupt.check()?;
+            for &float in floats {
+                writer.plain(T::from_f64(float).to_plain(), T::BITS);
+            }
         }
+        Ok(())
     }
 
     /// Decodes a joint of a clip of so many frames.
-    pub(super) fn read<T: Stored>(reader: &mut Reader<'_>, frames: usize, contexts: &mut Contexts) -> Self {
+    pub(super) fn read<T: Stored>(
+        reader: &mut Reader<'_>,
+        frames: usize,
+        contexts: &mut Contexts,
+        interrupt: &Interrupt,
+    ) -> Result<Self, Error> {
         let kind = usize::from(reader.plain(3).to_le_bytes()[0]);
         let mut joint = Self { kind, missing: vec![false; frames], ..Self::default() };
         if reader.plain(1) == 1 {
@@ -233,7 +253,7 @@ impl Joint {
         }
         let count = joint.count();
         if count == 0 {
-            return joint;
+            return Ok(joint);
         }
         let mut floats = 4;
         if kind != PLAIN {
@@ -246,12 +266,18 @@ impl Joint {
         }
         if (1..=COMPONENTS).contains(&kind) {
             joint.step = f64::from_bits(reader.plain(STEP_BITS) << (64 - STEP_BITS));
-            joint.coded = (0..kind)
-                .map(|_| Series::read(reader, count, &mut contexts.ahead, &mut contexts.between))
-                .collect();
+            for _ in 0..kind {
+                let series =
+                    Series::read(reader, count, &mut contexts.ahead, &mut contexts.between, interrupt)?;
+                joint.coded.push(series);
+            }
         }
-        joint.floats = (0..floats * count).map(|_| T::from_plain(reader.plain(T::BITS)).to_f64()).collect();
-        joint
+        for first in (0..floats * count).step_by(CHECKED) {
+            interrupt.check()?;
+            let numbers = first..(first + CHECKED).min(floats * count);
+            joint.floats.extend(numbers.map(|_| T::from_plain(reader.plain(T::BITS)).to_f64()));
+        }
+        Ok(joint)
     }
 }
 
@@ -269,4 +295,38 @@ fn storable(step: f64) -> f64 {
 /// The number that `width` bits stand for.
 fn signed(bits: u64, width: u32) -> i64 {
     (bits << (64 - width)).cast_signed() >> (64 - width)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_single_joint_heeds_an_interruption() {
+        let valid: Vec<[f64; 4]> = (0..1000)
+            .map(|i| crate::Real::sin_cos(f64::from(i) / 100.0))
+            .map(|(s, c)| [c, s, 0.0, 0.0])
+            .collect();
+        let frames = [[UNTURNED; 2]; 2];
+        let (stop, go) = (Interrupt::new(), Interrupt::new());
+        stop.set();
+        let fit = |interrupt: &Interrupt| {
+            Joint::new::<f64>(valid.clone(), vec![false; 1000], frames, (1e-3, true), interrupt)
+        };
+        assert!(matches!(fit(&stop), Err(Error::Interrupted)));
+        let joint = fit(&go).expect("nobody interrupts");
+        let mut writer = Writer::new();
+        assert!(matches!(
+            joint.write::<f64>(&mut writer, &mut Contexts::new(), &stop),
+            Err(Error::Interrupted)
+        ));
+        let (mut writer, mut contexts) = (Writer::new(), Contexts::new());
+        joint.write::<f64>(&mut writer, &mut contexts, &go).expect("nobody interrupts");
+        let bytes = writer.finish();
+        let read = |interrupt: &Interrupt| {
+            Joint::read::<f64>(&mut Reader::new(&bytes), 1000, &mut Contexts::new(), interrupt)
+        };
+        assert!(matches!(read(&stop), Err(Error::Interrupted)));
+        assert_eq!(read(&go).expect("nobody interrupts").path::<f64>(), joint.path::<f64>());
+    }
 }

@@ -101,11 +101,10 @@ impl Compress {
                     }
                 }
                 let (frames, tolerance) = (self.frames[joint], self.tolerance[joint]);
-                Ok(Joint::new::<T>(valid, missing, frames, tolerance, self.quantised))
+                Joint::new::<T>(valid, missing, frames, (tolerance, self.quantised), interrupt)
             })?;
             for joint in found {
-                interrupt.check()?;
-                joint.write::<T>(&mut writer, &mut contexts);
+                joint.write::<T>(&mut writer, &mut contexts, interrupt)?;
                 worst = worst.max(joint.error);
             }
         }
@@ -125,8 +124,7 @@ pub fn decompress<T: Stored>(data: &[u8], out: ClipMut<'_, T>, interrupt: &Inter
         let count = BATCH.min(joints - first);
         let mut batch = Vec::with_capacity(count);
         for _ in 0..count {
-            interrupt.check()?;
-            batch.push(Joint::read::<T>(&mut reader, frames, &mut contexts));
+            batch.push(Joint::read::<T>(&mut reader, frames, &mut contexts, interrupt)?);
         }
         let paths = parallel::map(batch, count * frames * NANOSECONDS / 4, |_, joint| {
             interrupt.check()?;

@@ -6,6 +6,8 @@
 
 use super::bits::{Reader, Writer};
 use super::numbers::Numbers;
+use crate::Error;
+use crate::parallel::Interrupt;
 use crate::simd::multiversion;
 
 /// Parts of a step that predictions are computed in.
@@ -24,6 +26,9 @@ const KERNELS: [([i64; 6], u32); 3] =
 
 /// Neighbours on each side that the widest kernel looks at.
 const REACH: usize = 3;
+
+/// Numbers after which Ctrl-C is heeded: some milliseconds.
+pub(super) const CHECKED: usize = 1 << 16;
 
 /// Stands for the neighbourhood of the first number, of which nothing is known.
 const FAR: u64 = 1 << 8;
@@ -152,19 +157,28 @@ impl Series {
     }
 
     /// Codes the series; `ahead` holds the contexts of the numbers that come first, `between` those of the others.
-    pub(super) fn write(&self, writer: &mut Writer, ahead: &mut Numbers, between: &mut Numbers) {
+    pub(super) fn write(
+        &self,
+        writer: &mut Writer,
+        ahead: &mut Numbers,
+        between: &mut Numbers,
+        interrupt: &Interrupt,
+    ) -> Result<(), Error> {
         let (steps, top) = (&self.steps[..], 1 << self.kernels.len());
-        for i in (0..steps.len()).step_by(top) {
+        for (count, i) in (0..steps.len()).step_by(top).enumerate() {
+            check(count, interrupt)?;
             ahead.write(writer, steps[i], size_before(steps, i, top));
         }
         let mut usual = Usual::new();
         for (level, &kernel) in (0..self.kernels.len()).rev().zip(&self.kernels) {
             writer.plain(kernel as u64, 2);
-            for i in (1 << level..steps.len()).step_by(2 << level) {
+            for (count, i) in (1 << level..steps.len()).step_by(2 << level).enumerate() {
+                check(count, interrupt)?;
                 between.write(writer, steps[i], sizes_nearby(steps, i, 1 << level) + usual.size());
                 usual.learn(steps[i].unsigned_abs());
             }
         }
+        Ok(())
     }
 
     /// Decodes a series of `n` numbers.
@@ -173,22 +187,30 @@ impl Series {
         n: usize,
         ahead: &mut Numbers,
         between: &mut Numbers,
-    ) -> Self {
+        interrupt: &Interrupt,
+    ) -> Result<Self, Error> {
         let levels = halvings(n);
         let (mut steps, mut kernels, top) = (vec![0_i64; n], Vec::with_capacity(levels), 1 << levels);
-        for i in (0..n).step_by(top) {
+        for (count, i) in (0..n).step_by(top).enumerate() {
+            check(count, interrupt)?;
             steps[i] = ahead.read(reader, size_before(&steps, i, top));
         }
         let mut usual = Usual::new();
         for level in (0..levels).rev() {
             kernels.push(usize::from(reader.plain(2).to_le_bytes()[0]) % KERNELS.len());
-            for i in (1 << level..n).step_by(2 << level) {
+            for (count, i) in (1 << level..n).step_by(2 << level).enumerate() {
+                check(count, interrupt)?;
                 steps[i] = between.read(reader, sizes_nearby(&steps, i, 1 << level) + usual.size());
                 usual.learn(steps[i].unsigned_abs());
             }
         }
-        Self { steps, kernels }
+        Ok(Self { steps, kernels })
     }
+}
+
+/// Every now and then, whether there is still somebody who waits.
+fn check(count: usize, interrupt: &Interrupt) -> Result<(), Error> {
+    if count.is_multiple_of(CHECKED) { interrupt.check() } else { Ok(()) }
 }
 
 /// Mean magnitude of a series so far: it forgets what is more than about 16 numbers ago.
@@ -239,10 +261,13 @@ mod tests {
             let (series, back) = differences(&numbers);
             assert!(numbers.iter().zip(&back).all(|(a, b)| (a - b).abs() <= STEP / 2), "{n}");
             let (mut writer, mut ahead, mut between) = (Writer::new(), Numbers::new(), Numbers::new());
-            series.write(&mut writer, &mut ahead, &mut between);
+            let interrupt = Interrupt::new();
+            series.write(&mut writer, &mut ahead, &mut between, &interrupt).expect("nobody interrupts");
             let bytes = writer.finish();
             let (mut ahead, mut between) = (Numbers::new(), Numbers::new());
-            let read = Series::read(&mut Reader::new(&bytes), usize::from(n), &mut ahead, &mut between);
+            let mut reader = Reader::new(&bytes);
+            let read = Series::read(&mut reader, usize::from(n), &mut ahead, &mut between, &interrupt)
+                .expect("nobody interrupts");
             assert_eq!(read.restored(), back, "{n}");
             assert_eq!(series.restored(), back, "{n}");
         }
