@@ -16,6 +16,8 @@ from timing import Contender, all_threads, ours, race
 FRAMES = 20_000
 RADIUS, COUNT = 5, 16
 AGREEMENT_FRAMES, AGREEMENT_SCALE = 2_000, 300
+WALK_STEP = 0.1
+"""Deviation of a random walk's step per coordinate, in radians."""
 BLOCK = 512
 """Frames whose distances to all others are held at once."""
 
@@ -79,6 +81,16 @@ def _recorded() -> Array | None:
     return None
 
 
+def _walks() -> Array:
+    """Return random walks on SO(3), one per joint, that go round all rotations and never come back to a pose."""
+    steps = qf.exp(0.5 * WALK_STEP * np.random.default_rng(0).standard_normal((FRAMES, JOINTS, 3)))
+    walks = np.empty((FRAMES, JOINTS, 4))
+    walks[0] = [1, 0, 0, 0]
+    for t in range(1, FRAMES):
+        walks[t] = qf.multiply(walks[t - 1], steps[t])
+    return (walks / np.linalg.norm(walks, axis=-1, keepdims=True)).astype(np.float32)
+
+
 def run(repetitions: int) -> Results:
     """Measure."""
     results = Results()
@@ -89,6 +101,7 @@ def run(repetitions: int) -> Results:
     if recorded is not None:
         _beside_peers(results, "recordings", recorded, repetitions, aims=(4, 10))
     _beside_peers(results, "waves that never repeat", waves, repetitions)
+    _beside_peers(results, "random walks", _walks(), repetitions)
     pose_search.measure(results, repetitions)
     return results
 

@@ -73,10 +73,10 @@ def patch_neighbors(
 
     Notes
     -----
-    At most ``frames · candidates · joints`` angles, whatever the patch; of clips without missing samples, diagonals of
-    pairs that the triangle inequality shows to be too far are passed over: some 3 % of the angles are left of long recorded
-    clips. Memory beyond the result: 16 bytes for each neighbour, 35 MB for 31 joints in float32 for
-    16,384 candidates at a time, and some MB per thread.
+    At most ``frames · candidates · joints`` angles, whatever the patch; of clips without missing samples, pairs that bounds
+    show to be too far apart are passed over, which leaves some thousandths of the angles even where motion never repeats. Memory
+    beyond the result: 16 bytes for each neighbour, 28 to 47 MB for 31 joints in float32 for 16,384 candidates at a time, and
+    some MB per thread.
 
     Distances within rounding of each other may change places between precisions and backends.
 

@@ -39,13 +39,13 @@ impl<T: Real> Measure<T> {
         self.before + self.after + 1
     }
 
-    /// One over the divisor of complete patches.
-    fn scale(&self) -> T {
+    /// The divisor of complete patches.
+    pub(crate) fn divisor(&self) -> f64 {
         if !self.averaged {
-            return T::ONE;
+            return 1.0;
         }
         let units: f64 = self.units[self.joints.clone()].iter().map(|unit| unit.to_f64()).sum();
-        T::from_f64(1.0 / (units * self.window() as f64))
+        units * self.window() as f64
     }
 }
 
@@ -88,7 +88,7 @@ impl<T: Real> Diagonal<T> {
         } else {
             kernels::frame_distances(squares, a, b, at, joints, factors);
             kernels::sliding_sums(squares, spare, window, out);
-            kernels::roots(out, measure.scale());
+            kernels::roots(out, T::from_f64(1.0 / measure.divisor()));
         }
     }
 }

@@ -1,26 +1,19 @@
-//! All diagonals between a block of frames and a block of candidates, or those that matter.
+//! All pairs between a block of frames and a block of candidates, or those that matter.
 //!
-//! With complete samples a patch distance `D` obeys the triangle inequality: no candidate within `h` frames of `s` is nearer
-//! to `t` than `D(t, s) − S_h(s)`, where `S_h(s)` is the largest distance from `s` to a patch at most `h` frames away. So one
-//! diagonal in 81 is measured for all frames. Where the bound lies beyond the nearest candidates that are known, the 80
-//! diagonals around it are passed over; elsewhere the same is asked of blocks of 27, of 9 and of 3. Nothing is lost: what is kept is
-//! what measuring all diagonals would have kept, to the last bit.
+//! With complete samples, most pairs are farther apart than the nearest candidates that are known by a bound that takes little
+//! time. What is left is measured along its diagonals. Nothing is lost: what is kept is what measuring all pairs would have kept,
+//! to the last bit.
 
+use super::bounds::{Bounds, COLUMNS, ROWS, Strip};
 use super::diagonal::{Diagonal, Measure};
 use super::features::Side;
-use super::kernels;
-use super::nearest::Nearest;
-use super::spread::{HALVES, Spreads};
-use crate::clip::Planes;
+use super::nearest::Lists;
 use crate::parallel::Interrupt;
 use crate::{Error, Real};
 use std::ops::{Range, RangeInclusive};
 
 /// Frames without a candidate that matters which a run may hold: every run measures a patch more than it has frames.
 const LARGEST_HOLE: usize = 16;
-
-/// Roundings, in units of the last place, by which distances may break the triangle inequality: those of a hundred terms.
-const ROUNDINGS: f64 = 256.0;
 
 /// Which candidates of a frame count, by their number less that of the frame.
 #[derive(Debug, Clone)]
@@ -49,10 +42,9 @@ pub(crate) struct Scratch<T> {
     diagonal: Diagonal<T>,
     marks: Vec<u8>,
     distances: Vec<T>,
-    /// Distances of the middle diagonal of each of the widest blocks.
-    coarse: Planes<T>,
-    /// Those of diagonals within blocks, per level.
-    fine: [Vec<T>; HALVES.len()],
+    strip: Strip<T>,
+    /// Pairs of frames and candidates, by diagonals.
+    pairs: Vec<u64>,
 }
 
 /// The frames whose neighbours are sought, the candidates, and how they are compared.
@@ -62,40 +54,41 @@ pub(crate) struct Join<'a, T> {
     pub(crate) frames: Side<'a, T>,
     pub(crate) candidates: Side<'a, T>,
     pub(crate) lags: Lags,
-    /// Where they are given, diagonals that do not matter are passed over; the samples must be complete, and the planes
-    /// of the candidates reach [`MARGIN`](super::spread::MARGIN) frames farther than the patches.
-    pub(crate) spreads: Option<&'a Spreads<T>>,
+    /// Of these candidates: where they are given, pairs that do not matter are passed over; the samples must be complete.
+    pub(crate) bounds: Option<&'a Bounds<T>>,
+    /// Whether the candidates look for neighbours among the frames too: then of a clip whose frames are both, each pair is
+    /// looked at once. Bounds must be given.
+    pub(crate) mutual: bool,
 }
 
 impl<T: Real> Join<'_, T> {
-    /// Offers to `nearest`, which knows the frames as 0, 1, …, whatever candidate may be among the nearest.
+    /// Offers to the frames whatever candidate may be among the nearest, and the other way round if they are mutual.
     pub(crate) fn run(
         &self,
-        nearest: &mut Nearest<T>,
+        lists: &Lists<T>,
         scratch: &mut Scratch<T>,
         interrupt: &Interrupt,
     ) -> Result<(), Error> {
-        // Diagonals count from the first frame and the first candidate of the blocks.
-        let shift = self.shift();
-        let last_frame = self.frames.count.cast_signed() - 1;
-        let last_candidate = self.candidates.count.cast_signed() - 1;
-        let low = (-last_frame).max(self.lags.within.start().saturating_sub(shift));
-        let high = last_candidate.min(self.lags.within.end().saturating_sub(shift));
-        if low > high || last_frame < 0 {
-            return Ok(());
+        let Some(lags) = self.lags() else { return Ok(()) };
+        if let Some(bounds) = self.bounds
+            && bounds.tell(&self.frames.features)
+        {
+            return self.sift(&lags, bounds, lists, scratch, interrupt);
         }
-        if let Some(spreads) = self.spreads {
-            return self.pass_over(low, high, spreads, nearest, scratch, interrupt);
-        }
-        for lag in (low..=high).filter(|lag| self.lags.count(lag + shift)) {
+        for lag in lags.filter(|lag| self.lags.count(lag + self.shift())) {
             interrupt.check()?;
-            let range = self.meeting(lag, 0);
-            let Scratch { diagonal, distances, marks, .. } = scratch;
-            distances.resize(range.len(), T::ZERO);
-            self.measure(diagonal, lag, range.start, distances);
-            self.offer(nearest, marks, lag, range.start, distances);
+            self.look(lag, self.meeting(lag), false, lists, scratch);
         }
         Ok(())
+    }
+
+    /// The diagonals, from the first frame and the first candidate of the blocks.
+    fn lags(&self) -> Option<RangeInclusive<isize>> {
+        let last_frame = self.frames.count.cast_signed() - 1;
+        let last_candidate = self.candidates.count.cast_signed() - 1;
+        let low = (-last_frame).max(self.lags.within.start().saturating_sub(self.shift()));
+        let high = last_candidate.min(self.lags.within.end().saturating_sub(self.shift()));
+        if low > high || last_frame < 0 { None } else { Some(low..=high) }
     }
 
     /// The lag between the numbers of the first candidate and the first frame.
@@ -103,11 +96,10 @@ impl<T: Real> Join<'_, T> {
         self.candidates.first.cast_signed() - self.frames.first.cast_signed()
     }
 
-    /// The frames that meet a candidate on a diagonal, or a patch at most `margin` frames beyond the candidates.
-    fn meeting(&self, lag: isize, margin: usize) -> Range<usize> {
-        let margin = margin.cast_signed();
-        let last = (self.candidates.count.cast_signed() + margin - lag).max(0).cast_unsigned();
-        let first = (-margin - lag).max(0).cast_unsigned();
+    /// The frames that meet a candidate on a diagonal.
+    fn meeting(&self, lag: isize) -> Range<usize> {
+        let last = (self.candidates.count.cast_signed() - lag).max(0).cast_unsigned();
+        let first = (-lag).max(0).cast_unsigned();
         first..last.min(self.frames.count).max(first)
     }
 
@@ -118,132 +110,175 @@ impl<T: Real> Join<'_, T> {
         diagonal.measure(self.measure, &a.features, &b.features, at, out);
     }
 
-    /// Offers the candidates of a diagonal, measured from a frame.
-    fn offer(
+    /// Measures the pairs that may be near enough.
+    fn sift(
         &self,
-        nearest: &mut Nearest<T>,
-        marks: &mut Vec<u8>,
-        lag: isize,
-        first: usize,
-        distances: &[T],
-    ) {
-        let inside = self.meeting(lag, 0);
-        let (from, to) = (first.max(inside.start), (first + distances.len()).min(inside.end));
-        if from >= to || !self.lags.count(lag + self.shift()) {
-            return;
-        }
-        let distances = &distances[from - first..to - first];
-        marks.resize(to - from, 0);
-        if !kernels::mark_nearest(marks, distances, &nearest.limits()[from..to]) {
-            return;
-        }
-        let number = (self.candidates.first + from).wrapping_add_signed(lag);
-        for (i, distance) in distances.iter().enumerate() {
-            if marks[i] != 0 {
-                nearest.offer(from + i, *distance, number + i);
-            }
-        }
-    }
-
-    /// Measures one diagonal of each block, and of the others those that matter.
-    fn pass_over(
-        &self,
-        low: isize,
-        high: isize,
-        spreads: &Spreads<T>,
-        nearest: &mut Nearest<T>,
+        lags: &RangeInclusive<isize>,
+        bounds: &Bounds<T>,
+        lists: &Lists<T>,
         scratch: &mut Scratch<T>,
         interrupt: &Interrupt,
     ) -> Result<(), Error> {
-        let half = HALVES[0];
-        let mut middles: Vec<isize> =
-            (low + half.cast_signed()..=high + half.cast_signed()).step_by(2 * half + 1).collect();
-        // Near candidates first, for they are often the nearest, and the others are then passed over.
-        middles.sort_by_key(|middle| (middle + self.shift()).unsigned_abs());
-        let Scratch { diagonal, coarse, fine, marks, .. } = scratch;
-        coarse.reshape(middles.len(), self.frames.count);
-        for (block, &middle) in middles.iter().enumerate() {
-            interrupt.check()?;
-            let range = self.meeting(middle, half);
-            let row = &mut coarse.row_mut(block)[range.clone()];
-            self.measure(diagonal, middle, range.start, row);
-            self.offer(nearest, marks, middle, range.start, row);
+        let mut strip = std::mem::take(&mut scratch.strip);
+        let mut pairs = std::mem::take(&mut scratch.pairs);
+        let (mut limits, mut others) = ([T::ZERO; ROWS], [T::ZERO; COLUMNS]);
+        for start in (0..self.frames.count).step_by(ROWS) {
+            let frames = start..self.frames.count.min(start + ROWS);
+            let limits = &mut limits[..frames.len()];
+            strip.load(bounds, self.measure, &self.frames, frames.clone());
+            if !self.mutual {
+                self.sow(lags, &frames, lists, scratch);
+            }
+            for tile in self.tiles(&frames) {
+                interrupt.check()?;
+                lists.read_limits(self.frames.first + start, limits);
+                strip.limit(bounds, limits);
+                let candidates = tile * COLUMNS..self.candidates.count.min((tile + 1) * COLUMNS);
+                // Both of a pair are frames of the strip itself.
+                let own = self.candidates.first + candidates.start == self.frames.first + start;
+                let mutual = self.mutual && !own;
+                if mutual {
+                    lists.read_limits(
+                        self.candidates.first + candidates.start,
+                        &mut others[..candidates.len()],
+                    );
+                } else {
+                    others.fill(T::ZERO);
+                }
+                strip.limit_others(bounds, &others);
+                pairs.clear();
+                strip.sift(bounds, tile, |row, candidate| {
+                    let frame = start + row;
+                    let lag = candidate.cast_signed() - frame.cast_signed();
+                    if lags.contains(&lag) && self.lags.count(lag + self.shift()) {
+                        pairs.push(pack(lag, frame));
+                    }
+                });
+                pairs.sort_unstable();
+                for (lag, run) in runs(&pairs) {
+                    self.look(lag, run, mutual, lists, scratch);
+                }
+            }
         }
-        for (block, &middle) in middles.iter().enumerate() {
-            interrupt.check()?;
-            let range = self.meeting(middle, half);
-            let row = &coarse.row(block)[range.clone()];
-            self.refine(0, middle, range.start, row, spreads, nearest, diagonal, marks, fine);
-        }
+        (scratch.strip, scratch.pairs) = (strip, pairs);
         Ok(())
     }
 
-    /// Measures what matters of a block of diagonals, whose middle one was measured from the frame `first`.
-    #[allow(clippy::too_many_arguments, reason = "parts of one scratch, borrowed apart")]
-    fn refine(
+    /// Offers the candidates of some frames on a diagonal.
+    fn look(
         &self,
-        level: usize,
-        middle: isize,
-        first: usize,
-        distances: &[T],
-        spreads: &Spreads<T>,
-        nearest: &mut Nearest<T>,
-        diagonal: &mut Diagonal<T>,
-        marks: &mut Vec<u8>,
-        fine: &mut [Vec<T>],
+        lag: isize,
+        frames: Range<usize>,
+        mutual: bool,
+        lists: &Lists<T>,
+        scratch: &mut Scratch<T>,
     ) {
-        let Some((own, deeper)) = fine.split_first_mut() else { return };
-        let margin = HALVES[0];
-        let from = (first + margin).wrapping_add_signed(middle);
-        let spread = &spreads.level(level)[from..from + distances.len()];
-        let limits = &nearest.limits()[first..first + distances.len()];
-        marks.resize(distances.len(), 0);
-        let keep = T::from_f64(1.0 - ROUNDINGS * T::EPSILON.to_f64());
-        if !kernels::mark_near(marks, distances, spread, limits, keep) {
-            return;
+        let Scratch { diagonal, distances, marks, .. } = scratch;
+        distances.resize(frames.len(), T::ZERO);
+        self.measure(diagonal, lag, frames.start, distances);
+        let frame = self.frames.first + frames.start;
+        let candidate = (self.candidates.first + frames.start).wrapping_add_signed(lag);
+        lists.offer(frame, candidate, distances, marks);
+        if mutual {
+            lists.offer(candidate, frame, distances, marks);
         }
-        let inner = HALVES.get(level + 1).copied().unwrap_or(0);
-        let step = (2 * inner + 1).cast_signed();
-        for run in runs(marks) {
-            if level + 1 < HALVES.len() {
-                let known = &distances[run.clone()];
-                self.refine(
-                    level + 1,
-                    middle,
-                    first + run.start,
-                    known,
-                    spreads,
-                    nearest,
-                    diagonal,
-                    marks,
-                    deeper,
-                );
-            }
-            for lag in [middle - step, middle + step] {
-                let reach = self.meeting(lag, inner);
-                let range = (first + run.start).max(reach.start)..(first + run.end).min(reach.end);
-                if range.is_empty() {
-                    continue;
-                }
-                own.resize(range.len(), T::ZERO);
-                self.measure(diagonal, lag, range.start, own);
-                self.offer(nearest, marks, lag, range.start, own);
-                self.refine(level + 1, lag, range.start, own, spreads, nearest, diagonal, marks, deeper);
+    }
+
+    /// Offers a few candidates to frames that do not have enough yet, to know early how near the nearest are. Mutual joins need
+    /// it done for all frames before.
+    pub(crate) fn prepare(&self, lists: &Lists<T>, scratch: &mut Scratch<T>) {
+        if let Some(lags) = self.lags() {
+            for start in (0..self.frames.count).step_by(ROWS) {
+                self.sow(&lags, &(start..self.frames.count.min(start + ROWS)), lists, scratch);
             }
         }
     }
+
+    /// Offers the candidates nearest in time, which often are the nearest, and where there are not enough, some of all.
+    fn sow(
+        &self,
+        lags: &RangeInclusive<isize>,
+        frames: &Range<usize>,
+        lists: &Lists<T>,
+        scratch: &mut Scratch<T>,
+    ) {
+        let (shift, without) = (self.shift(), &self.lags.without);
+        let low = (*lags.start()).max(1 - frames.end.cast_signed());
+        let high = (*lags.end()).min(self.candidates.count.cast_signed() - 1 - frames.start.cast_signed());
+        let count = lists.count().cast_signed();
+        let near = (0..count).flat_map(|i| [without.end() + 1 + i - shift, without.start() - 1 - i - shift]);
+        let step = ((high - low) / (2 * count.max(1))).max(1).cast_unsigned();
+        let spaced = (low..=high).step_by(step);
+        let mut limits = [T::ZERO; ROWS];
+        let limits = &mut limits[..frames.len()];
+        for lag in near.chain(spaced) {
+            if !(low..=high).contains(&lag) || !self.lags.count(lag + shift) {
+                continue;
+            }
+            lists.read_limits(self.frames.first + frames.start, limits);
+            if limits.iter().all(|limit| limit.is_finite()) {
+                return;
+            }
+            let range = self.meeting(lag);
+            let range = range.start.max(frames.start)..range.end.min(frames.end);
+            if !range.is_empty() {
+                self.look(lag, range, false, lists, scratch);
+            }
+        }
+    }
+
+    /// The tiles of candidates that count for one of the frames, those nearest in time first.
+    fn tiles(&self, frames: &Range<usize>) -> Vec<usize> {
+        let Lags { within, without } = &self.lags;
+        let lag =
+            |tile: usize, frame: usize| self.shift() + (tile * COLUMNS).cast_signed() - frame.cast_signed();
+        let mut tiles: Vec<usize> = (0..self.candidates.count.div_ceil(COLUMNS))
+            .filter(|&tile| {
+                let lowest = lag(tile, frames.end - 1);
+                let highest = lag(tile + 1, frames.start) - 1;
+                let left_out = without.contains(&lowest) && without.contains(&highest);
+                highest >= *within.start() && lowest <= *within.end() && !left_out
+            })
+            .collect();
+        // Of the pairs of two strips of the same candidates, one of both looks at them: half of them each, as on a circle.
+        let count = self.candidates.count.div_ceil(COLUMNS);
+        let own = (self.frames.first + frames.start).checked_sub(self.candidates.first);
+        if let Some(own) = own.map(|own| own / COLUMNS).filter(|own| self.mutual && *own < count) {
+            tiles.retain(|&tile| {
+                let ahead = (tile + count - own) % count;
+                2 * ahead < count || (2 * ahead == count && own < tile)
+            });
+        }
+        tiles.sort_by_key(|&tile| lag(tile, frames.start).unsigned_abs());
+        tiles
+    }
 }
 
-/// The runs of marks, across holes of at most [`LARGEST_HOLE`].
-fn runs(marks: &[u8]) -> Vec<Range<usize>> {
-    let mut runs: Vec<Range<usize>> = Vec::new();
-    for (i, mark) in marks.iter().enumerate() {
-        if *mark == 0 {
-            continue;
-        }
+/// What lags in a [`pack`] are counted from.
+const ORIGIN: isize = 1 << 31;
+
+/// A lag and a frame as a number, in order of lags, then of frames: such numbers are fast to sort.
+fn pack(lag: isize, frame: usize) -> u64 {
+    ((lag + ORIGIN).cast_unsigned() as u64) << 32 | frame as u64
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    reason = "halves of a number of 64 bits"
+)]
+fn unpack(pair: u64) -> (isize, usize) {
+    ((pair >> 32) as isize - ORIGIN, (pair & u64::from(u32::MAX)) as usize)
+}
+
+/// The runs of frames on a diagonal, across holes of at most [`LARGEST_HOLE`], among packed pairs in order.
+fn runs(pairs: &[u64]) -> Vec<(isize, Range<usize>)> {
+    let mut runs: Vec<(isize, Range<usize>)> = Vec::new();
+    for &pair in pairs {
+        let (lag, frame) = unpack(pair);
         match runs.last_mut() {
-            Some(run) if i - run.end <= LARGEST_HOLE => run.end = i + 1,
-            _ => runs.push(i..i + 1),
+            Some((last, run)) if *last == lag && frame - run.end <= LARGEST_HOLE => run.end = frame + 1,
+            _ => runs.push((lag, frame..frame + 1)),
         }
     }
     runs
@@ -255,10 +290,8 @@ mod tests {
 
     #[test]
     fn runs_go_across_small_holes() {
-        let mut marks = vec![0; 100];
-        for i in [3, 4, 20, 37, 60, 99] {
-            marks[i] = 1;
-        }
-        assert_eq!(runs(&marks), [3..38, 60..61, 99..100]);
+        let pairs = [(-1, 99), (2, 3), (2, 4), (2, 20), (2, 37), (2, 60), (3, 61)];
+        let pairs = pairs.map(|(lag, frame)| pack(lag, frame));
+        assert_eq!(runs(&pairs), [(-1, 99..100), (2, 3..38), (2, 60..61), (3, 61..62)]);
     }
 }

@@ -138,20 +138,33 @@ multiversion! {
 /// positive terms only, and none runs on: a burst in one place leaves no error elsewhere, and a sum depends on its own
 /// terms alone, wherever the values begin. `values` is used up.
 pub(crate) fn sliding_sums<T: Real>(values: &mut Vec<T>, spare: &mut Vec<T>, window: usize, out: &mut [T]) {
+    sums_along(values, spare, window, 1, out);
+}
+
+/// Sums of values that are `step` apart: `out[i] = values[i] + … + values[i + (window − 1)·step]`, as [`sliding_sums`].
+///
+/// With rows one number shorter than the step, these are sums along the diagonals of a matrix.
+pub(crate) fn sums_along<T: Real>(
+    values: &mut Vec<T>,
+    spare: &mut Vec<T>,
+    window: usize,
+    step: usize,
+    out: &mut [T],
+) {
     let n = out.len();
     out.fill(T::ZERO);
     let (mut covered, mut power) = (0, 1);
     loop {
         if window & power != 0 {
-            add_plane(out, &values[covered..covered + n]);
+            add_plane(out, &values[covered * step..covered * step + n]);
             covered += power;
         }
         if covered == window {
             return;
         }
-        let length = values.len() - power;
+        let length = values.len() - power * step;
         spare.resize(length, T::ZERO);
-        add_shifted(&mut spare[..length], values, power);
+        add_shifted(&mut spare[..length], values, power * step);
         std::mem::swap(values, spare);
         values.truncate(length);
         power *= 2;
@@ -182,21 +195,6 @@ multiversion! {
 }
 
 multiversion! {
-    /// Marks with 1 where `keep·d[i] − spread[i] ≤ limit[i]`, and tells whether there is a mark.
-    pub(crate) fn mark_near<T: Real>(marks: &mut [u8], d: &[T], spread: &[T], limit: &[T], keep: T) -> bool {
-        let n = marks.len();
-        let (d, spread, limit) = (&d[..n], &spread[..n], &limit[..n]);
-        let mut any = 0;
-        for i in 0..n {
-            let near = u8::from(keep * d[i] - spread[i] <= limit[i]);
-            marks[i] = near;
-            any |= near;
-        }
-        any != 0
-    }
-}
-
-multiversion! {
     /// Marks with 1 where `d[i] ≤ limit[i]`, and tells whether there is a mark.
     pub(crate) fn mark_nearest<T: Real>(marks: &mut [u8], d: &[T], limit: &[T]) -> bool {
         let n = marks.len();
@@ -208,16 +206,5 @@ multiversion! {
             any |= near;
         }
         any != 0
-    }
-}
-
-multiversion! {
-    /// `most = max(most, x)`.
-    pub(crate) fn keep_largest<T: Real>(most: &mut [T], x: &[T]) {
-        let n = most.len();
-        let x = &x[..n];
-        for i in 0..n {
-            most[i] = most[i].max(x[i]);
-        }
     }
 }

@@ -7,11 +7,12 @@
 //! - `features`: what frames are compared by, as planes;
 //! - `diagonal`: distances of the patches of one diagonal;
 //! - `nearest`: the most similar so far;
-//! - `join`: all diagonals between a block of frames and a block of candidates, or those that matter;
-//! - `spread`: how fast a motion changes, which tells the diagonals that do not matter;
+//! - `join`: all pairs between a block of frames and a block of candidates, or those that matter;
+//! - `bounds`: what patches are never nearer than, which tells the pairs that do not matter;
 //! - `kernels`: the vectorised loops;
 //! - [`poses`]: the nearest segments of poses in a database, and the graph of neighbours.
 
+pub(crate) mod bounds;
 pub(crate) mod diagonal;
 pub(crate) mod features;
 pub(crate) mod join;
@@ -19,4 +20,3 @@ pub(crate) mod kernels;
 pub(crate) mod nearest;
 pub mod patch_neighbors;
 pub mod poses;
-pub(crate) mod spread;

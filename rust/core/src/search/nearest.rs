@@ -1,6 +1,8 @@
 //! The most similar patches found so far.
 
+use super::kernels;
 use crate::Real;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// Which of two candidates at the same distance comes first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -11,7 +13,8 @@ pub(crate) enum Ties {
     Nearer,
 }
 
-/// The `count` nearest candidates of some frames, nearest first. What is kept does not depend on the order of the offers.
+/// The `count` nearest candidates of some frames, nearest first. What is kept does not depend on the order of the offers, nor on
+/// whether one is made again.
 #[derive(Debug)]
 pub(crate) struct Nearest<T> {
     count: usize,
@@ -38,11 +41,6 @@ impl<T: Real> Nearest<T> {
             numbers: vec![0; frames * count],
             limits: vec![infinite; frames],
         }
-    }
-
-    /// How far the last one that is kept is, per frame.
-    pub(crate) fn limits(&self) -> &[T] {
-        &self.limits
     }
 
     /// What is kept for a frame: distances and numbers.
@@ -81,6 +79,9 @@ impl<T: Real> Nearest<T> {
         while place > 0 && precedes(place - 1) {
             place -= 1;
         }
+        if place > 0 && self.numbers[row + place - 1] == number {
+            return;
+        }
         self.distances.copy_within(row + place..row + kept, row + place + 1);
         self.numbers.copy_within(row + place..row + kept, row + place + 1);
         self.distances[row + place] = distance;
@@ -92,18 +93,85 @@ impl<T: Real> Nearest<T> {
     }
 }
 
+/// The nearest candidates of frames in sequence, so many frames in a list, so that threads may share them.
+#[derive(Debug)]
+pub(crate) struct Lists<T> {
+    each: Vec<Mutex<Nearest<T>>>,
+    /// The number of the first frame.
+    first: usize,
+    /// Frames of a list.
+    length: usize,
+    /// Candidates of a frame.
+    count: usize,
+}
+
+impl<T: Real> Lists<T> {
+    /// For the frames `first..first + frames`, with at most `count` candidates each, in lists of `length` frames.
+    pub(crate) fn new(first: usize, frames: usize, length: usize, count: usize, ties: Ties) -> Self {
+        let list = |start| Mutex::new(Nearest::new(first + start, length.min(frames - start), count, ties));
+        Self { each: (0..frames).step_by(length.max(1)).map(list).collect(), first, length, count }
+    }
+
+    /// How many are kept at most for each frame.
+    pub(crate) fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The list of a frame, and which of its frames that is.
+    fn list(&self, frame: usize) -> (MutexGuard<'_, Nearest<T>>, usize) {
+        let place = frame - self.first;
+        let list = self.each[place / self.length].lock();
+        (list.unwrap_or_else(PoisonError::into_inner), place % self.length)
+    }
+
+    /// Writes the limits of frames of a list.
+    pub(crate) fn read_limits(&self, first: usize, limits: &mut [T]) {
+        let (list, place) = self.list(first);
+        limits.copy_from_slice(&list.limits[place..place + limits.len()]);
+    }
+
+    /// Offers candidates to frames of a list, to each the one that follows that of the frame before.
+    pub(crate) fn offer(&self, first: usize, number: usize, distances: &[T], marks: &mut Vec<u8>) {
+        let (mut list, place) = self.list(first);
+        marks.resize(distances.len(), 0);
+        if !kernels::mark_nearest(marks, distances, &list.limits[place..place + distances.len()]) {
+            return;
+        }
+        for (i, distance) in distances.iter().enumerate() {
+            if marks[i] != 0 {
+                list.offer(place + i, *distance, number + i);
+            }
+        }
+    }
+
+    /// The lists, one after the other.
+    pub(crate) fn into_nearest(self) -> impl Iterator<Item = Nearest<T>> {
+        self.each.into_iter().map(|list| list.into_inner().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn the_order_of_offers_does_not_matter() {
-        let offers = [(3.0, 7), (1.0, 9), (2.0, 1), (2.0, 0), (f64::INFINITY, 2), (2.0, 30), (1.0, 4)];
+        let offers = [
+            (3.0, 7),
+            (1.0, 9),
+            (2.0, 1),
+            (2.0, 0),
+            (f64::INFINITY, 2),
+            (2.0, 30),
+            (1.0, 4),
+            (2.0, 0),
+            (1.0, 9),
+        ];
         for ties in [Ties::Lower, Ties::Nearer] {
             for shift in 0..offers.len() {
                 let mut nearest = Nearest::new(6, 1, 4, ties);
                 for i in 0..offers.len() {
-                    let (distance, number) = offers[(i * 3 + shift) % offers.len()];
+                    let (distance, number) = offers[(i * 2 + shift) % offers.len()];
                     nearest.offer(0, distance, number);
                 }
                 let expected = match ties {

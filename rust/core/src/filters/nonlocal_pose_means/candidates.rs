@@ -6,12 +6,12 @@ use super::path::JointChart;
 use super::tile::Tile;
 use super::{Distance, NonlocalPoseMeans, Reach};
 use crate::parallel::Interrupt;
+use crate::search::bounds::Bounds;
 use crate::search::diagonal::Measure;
 use crate::search::features::{Features, Joint, Kind, Side};
 use crate::search::join::{Join, Lags, Scratch};
-use crate::search::nearest::{Nearest, Ties};
+use crate::search::nearest::{Lists, Ties};
 use crate::search::patch_neighbors::{Loaded, Poses};
-use crate::search::spread::{MARGIN, Spreads};
 use crate::{ClipView, Error, Real};
 use std::ops::Range;
 
@@ -39,7 +39,7 @@ struct Scene<T> {
     /// Its first frame, counted through the library.
     first: usize,
     /// One for each group of joints that share weights, where samples are complete.
-    spreads: Vec<Spreads<T>>,
+    bounds: Vec<Bounds<T>>,
 }
 
 impl<T: Real> Library<T> {
@@ -54,21 +54,25 @@ impl<T: Real> Library<T> {
         interrupt: &Interrupt,
     ) -> Result<Self, Error> {
         let poses = Poses::new(clip, clips, shared, interrupt)?;
-        let pad = reach.before + MARGIN;
+        let pad = reach.before;
         let (mut scenes, mut frames) = (Vec::with_capacity(clips.len()), 0);
         for clip in clips.iter().filter(|clip| clip.frames() > 0) {
             let mut loaded = Loaded::default();
             poses.load(*clip, 0..clip.frames(), pad, &mut loaded);
-            let side = Side { features: loaded.features(), at: pad, first: 0, count: clip.frames() };
-            let spreads = if poses.complete() {
+            // The signs of the filtered clip are its own.
+            let joints = loaded.features().joints.iter().map(|joint| Joint { kind: Kind::Wide, ..*joint });
+            let joints: Vec<Joint> = joints.collect();
+            let features = Features { joints: &joints, ..loaded.features() };
+            let side = Side { features, at: pad, first: 0, count: clip.frames() };
+            let bounds = if poses.complete() {
                 groups
                     .iter()
-                    .map(|group| Spreads::new(&filter.measure(group.clone(), reach), &side, interrupt))
+                    .map(|group| Bounds::new(&filter.measure(group.clone(), reach), &side, interrupt))
                     .collect::<Result<_, _>>()?
             } else {
                 Vec::new()
             };
-            scenes.push(Scene { loaded, frames: clip.frames(), first: frames, spreads });
+            scenes.push(Scene { loaded, frames: clip.frames(), first: frames, bounds });
             frames += clip.frames();
         }
         Ok(Self { scenes, frames })
@@ -77,7 +81,7 @@ impl<T: Real> Library<T> {
     /// Planes of a joint of the scene that holds a frame, the frame's column, and how far the sample counts.
     pub(super) fn sample(&self, frame: usize, joint: usize, before: usize) -> ([T; 4], T) {
         let scene = &self.scenes[self.scenes.partition_point(|scene| scene.first <= frame) - 1];
-        let column = before + MARGIN + frame - scene.first;
+        let column = before + frame - scene.first;
         let features = scene.loaded.features();
         let q = features.planes.rows_from::<4>(features.joints[joint].row).map(|q| q[column]);
         (q, features.shares.map_or(T::ONE, |shares| shares.row(joint)[column]))
@@ -120,11 +124,11 @@ impl<T: Real> Tile<'_, T> {
         Side { features, at: start, first: start, count: end - start }
     }
 
-    /// How fast the clip changes, for each group, where the search goes through all of it and that tells anything.
-    pub(super) fn spreads(&self, interrupt: &Interrupt) -> Result<Vec<Spreads<T>>, Error> {
+    /// What the candidates are never nearer than, for each group, where the search goes through all of it and that tells anything.
+    pub(super) fn bounds(&self, interrupt: &Interrupt) -> Result<Vec<Bounds<T>>, Error> {
         let reach = self.clip.reach;
         let far = self.clip.filter.neighbors.is_some() && !reach.added && self.clip.frames >= MANY_FRAMES;
-        if !far || self.confidence.is_some() || self.candidates.start < reach.before + MARGIN {
+        if !far || self.confidence.is_some() || self.candidates.start < reach.before {
             return Ok(Vec::new());
         }
         let kinds = self.kinds();
@@ -132,7 +136,7 @@ impl<T: Real> Tile<'_, T> {
         let groups = self.clip.filter.groups(self.rows.len()).into_iter();
         groups
             .map(|joints| {
-                Spreads::new(&self.clip.filter.measure(joints, reach).halved(&kinds), &side, interrupt)
+                Bounds::new(&self.clip.filter.measure(joints, reach).halved(&kinds), &side, interrupt)
             })
             .collect()
     }
@@ -154,26 +158,28 @@ impl<T: Real> Tile<'_, T> {
         let library = self.clip.library.as_ref();
         let others = library.map_or(0, |library| library.frames);
         let count = count.min(reach.back + reach.ahead + others);
-        let mut nearest = Nearest::new(self.at, self.frames, count, Ties::Nearer);
+        let lists = Lists::new(self.at, self.frames, self.frames, count, Ties::Nearer);
         let frames = Side { features, at: self.at, first: self.at, count: self.frames };
         let candidates = self.own(features);
-        let spreads = if self.frames >= MANY_FRAMES { self.clip.spreads.get(group) } else { None };
+        let bounds = if self.frames >= MANY_FRAMES { self.clip.bounds.get(group) } else { None };
         let lags = Lags { within: -reach.back.cast_signed()..=reach.ahead.cast_signed(), without: 0..=0 };
-        let window = Join { measure: &measure, frames, candidates, lags, spreads };
-        window.run(&mut nearest, scratch, interrupt)?;
+        let window = Join { measure: &measure, frames, candidates, lags, bounds, mutual: false };
+        window.run(&lists, scratch, interrupt)?;
         // Frames of the library come after all columns.
         let beyond = self.planes.length();
         for scene in library.iter().flat_map(|library| &library.scenes) {
             let candidates = Side {
                 features: scene.loaded.features(),
-                at: reach.before + MARGIN,
+                at: reach.before,
                 first: beyond + scene.first,
                 count: scene.frames,
             };
-            let spreads = if self.frames >= MANY_FRAMES { scene.spreads.get(group) } else { None };
-            let join = Join { measure: &measure, frames, candidates, lags: Lags::all(), spreads };
-            join.run(&mut nearest, scratch, interrupt)?;
+            let bounds = if self.frames >= MANY_FRAMES { scene.bounds.get(group) } else { None };
+            let join =
+                Join { measure: &measure, frames, candidates, lags: Lags::all(), bounds, mutual: false };
+            join.run(&lists, scratch, interrupt)?;
         }
+        let Some(nearest) = lists.into_nearest().next() else { return Ok(()) };
         for frame in 0..self.frames {
             for (distance, number) in nearest.of(frame) {
                 let exponent = distance * distance;

@@ -30,7 +30,6 @@ mod tile;
 use crate::error::check_length;
 use crate::parallel::{self, Interrupt};
 use crate::rotations::quaternion;
-use crate::search::spread::MARGIN;
 use crate::window::{Boundary, Extended};
 use crate::{ClipMut, ClipView, Error, Real};
 use candidates::Library;
@@ -118,12 +117,6 @@ pub(super) struct Reach {
 }
 
 impl NonlocalPoseMeans {
-    /// Whether the patch search may look beyond the ends of a whole clip, to pass over what does not matter. What is
-    /// extrapolated there could change the charts.
-    fn margin(&self) -> bool {
-        self.neighbors.is_some() && self.boundary != Boundary::Linear
-    }
-
     /// The joints that share weights.
     fn groups(&self, joints: usize) -> Vec<Range<usize>> {
         match self.weights {
@@ -141,7 +134,7 @@ impl NonlocalPoseMeans {
             ahead: window.min(self.lookahead.map_or(usize::MAX, |ahead| ahead - after)),
             before: self.patch_radius,
             after,
-            pad: self.patch_radius + self.search_radius.unwrap_or(if self.margin() { MARGIN } else { 0 }),
+            pad: self.patch_radius + self.search_radius.unwrap_or(0),
             added: self.search_radius.is_some(),
         }
     }
@@ -208,17 +201,17 @@ impl NonlocalPoseMeans {
             confidence,
             translation: moved,
             library,
-            spreads: Vec::new(),
+            bounds: Vec::new(),
             reach,
             frames,
         };
         let length = shared.tile_length();
-        let spreads = if self.neighbors.is_some() && !reach.added {
-            Tile::new(&shared, 0, length.min(frames), &mut Buffers::default()).spreads(interrupt)?
+        let bounds = if self.neighbors.is_some() && !reach.added {
+            Tile::new(&shared, 0, length.min(frames), &mut Buffers::default()).bounds(interrupt)?
         } else {
             Vec::new()
         };
-        shared.spreads = spreads;
+        shared.bounds = bounds;
         let moved_columns = if moved.is_some() { 3 } else { 0 };
         let tiles: Vec<(&mut [T], &mut [T])> = out
             .chunks_mut(length * joints * 4)

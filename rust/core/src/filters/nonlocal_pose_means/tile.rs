@@ -9,8 +9,8 @@ use super::{NonlocalPoseMeans, Reach};
 use crate::clip::Planes;
 use crate::parallel::Interrupt;
 use crate::rotations::quaternion::conjugate_one;
+use crate::search::bounds::Bounds;
 use crate::search::join::Scratch;
-use crate::search::spread::Spreads;
 use crate::window::{Boundary, Extended, extended_number};
 use crate::{Error, Real};
 use std::ops::Range;
@@ -33,8 +33,8 @@ pub(super) struct Clip<'a, T> {
     pub(super) confidence: Option<&'a [T]>,
     pub(super) translation: Option<&'a [T]>,
     pub(super) library: Option<Library<T>>,
-    /// How fast the clip changes, per group of joints; empty where nobody asks.
-    pub(super) spreads: Vec<Spreads<T>>,
+    /// What its candidates are never nearer than, per group of joints; empty where nobody asks.
+    pub(super) bounds: Vec<Bounds<T>>,
     pub(super) reach: Reach,
     pub(super) frames: usize,
 }

@@ -13,15 +13,16 @@
 
 mod poses;
 
+use super::bounds::{Bounds, LONGEST};
 use super::diagonal::Measure;
 use super::features::Side;
 use super::join::{Join, Lags, Scratch};
-use super::nearest::{Nearest, Ties};
-use super::spread::{MARGIN, Spreads};
+use super::nearest::{Lists, Nearest, Ties};
 use crate::error::check_length;
 use crate::parallel::{self, Interrupt};
 use crate::{ClipView, Error, Real};
 pub(crate) use poses::{Loaded, Poses};
+use std::ops::Range;
 use std::sync::Mutex;
 
 /// Frames of a task: their planes and their distances to a chunk of candidates stay within the second-level cache.
@@ -30,7 +31,7 @@ const TASK_FRAMES: usize = 256;
 /// Candidates whose planes are held at once: they stay within a common third-level cache.
 const CHUNK_FRAMES: usize = 16_384;
 
-/// Fewer frames are not worth the search for diagonals that do not matter, which costs as much as 40 of them.
+/// Fewer frames are not worth bounds, for which all candidates are read.
 const FEW_FRAMES: usize = 128;
 
 /// What a number that is not there stands for.
@@ -48,6 +49,9 @@ pub struct PatchNeighbors {
     /// What each joint counts, not negative.
     pub weights: Vec<f64>,
 }
+
+/// What is done for the frames of a task.
+type Work<'a, T> = dyn Fn(&Join<'_, T>, &mut Scratch<T>) -> Result<(), Error> + Sync + 'a;
 
 impl PatchNeighbors {
     /// Finds the nearest patches of every frame of `clip` among those of `library`, counted through its clips, or among its
@@ -80,9 +84,6 @@ impl PatchNeighbors {
         }
         let own = [clip];
         let scenes = library.unwrap_or(&own);
-        let without = self.exclusion.min(frames).cast_signed();
-        let lags =
-            if library.is_some() { Lags::all() } else { Lags { without: -without..=without, ..Lags::all() } };
         let weights: Vec<T> = self.weights.iter().map(|weight| T::from_f64(*weight)).collect();
         let measure = Measure {
             before: self.patch_radius,
@@ -93,9 +94,9 @@ impl PatchNeighbors {
             averaged: true,
         };
         let poses = Poses::new(clip, scenes, false, interrupt)?;
-        for (tile, nearest) in
-            self.nearest(&measure, &poses, clip, scenes, &lags, interrupt)?.iter().enumerate()
-        {
+        let library = library.is_some();
+        let found = self.nearest(&measure, &poses, clip, scenes, library, interrupt)?;
+        for (tile, nearest) in found.enumerate() {
             for frame in tile * TASK_FRAMES..frames.min((tile + 1) * TASK_FRAMES) {
                 let row = frame * self.count;
                 for (i, (distance, number)) in nearest.of(frame - tile * TASK_FRAMES).enumerate() {
@@ -107,65 +108,79 @@ impl PatchNeighbors {
         Ok(())
     }
 
-    /// What was found for each task.
+    /// What was found for the frames of each task.
     fn nearest<T: Real>(
         &self,
         measure: &Measure<T>,
         poses: &Poses<T>,
         clip: ClipView<'_, T>,
         scenes: &[ClipView<'_, T>],
-        lags: &Lags,
+        library: bool,
         interrupt: &Interrupt,
-    ) -> Result<Vec<Nearest<T>>, Error> {
+    ) -> Result<impl Iterator<Item = Nearest<T>> + use<T>, Error> {
         let frames = clip.frames();
+        let without = self.exclusion.min(frames).cast_signed();
+        let lags = if library { Lags::all() } else { Lags { without: -without..=without, ..Lags::all() } };
         let candidates: usize = scenes.iter().map(ClipView::frames).sum();
-        let count = self.count.min(candidates);
-        let mut found: Vec<Nearest<T>> = (0..frames)
-            .step_by(TASK_FRAMES)
-            .map(|first| Nearest::new(first, TASK_FRAMES.min(frames - first), count, Ties::Lower))
-            .collect();
-        let triangular = poses.complete() && frames >= FEW_FRAMES;
-        let margin = if triangular { MARGIN } else { 0 };
+        let lists = Lists::new(0, frames, TASK_FRAMES, self.count.min(candidates), Ties::Lower);
+        let bounded = poses.complete() && frames >= FEW_FRAMES;
+        let mutual = bounded && !library && measure.window() <= LONGEST;
         let spare: Mutex<Vec<(Loaded<T>, Scratch<T>)>> = Mutex::default();
+        let at = self.patch_radius;
         let mut first = 0;
         for scene in scenes {
             for start in (0..scene.frames()).step_by(CHUNK_FRAMES) {
-                let length = CHUNK_FRAMES.min(scene.frames() - start);
+                let end = scene.frames().min(start + CHUNK_FRAMES);
                 let mut chunk = Loaded::default();
-                let pad = self.patch_radius + margin;
-                poses.load(*scene, start..start + length, pad, &mut chunk);
-                let side = Side { features: chunk.features(), at: pad, first: first + start, count: length };
-                let spreads = if triangular { Some(Spreads::new(measure, &side, interrupt)?) } else { None };
-                let work = frames * length * measure.joints.len();
-                parallel::for_each(found.iter_mut().collect(), work, |task, nearest| {
-                    interrupt.check()?;
-                    let kept = spare.lock().map_or(None, |mut spare| spare.pop());
-                    let (mut loaded, mut scratch) = kept.unwrap_or_default();
-                    let from = task * TASK_FRAMES;
-                    let to = frames.min(from + TASK_FRAMES);
-                    poses.load(clip, from..to, self.patch_radius, &mut loaded);
-                    let join = Join {
-                        measure,
-                        frames: Side {
-                            features: loaded.features(),
-                            at: self.patch_radius,
-                            first: from,
-                            count: to - from,
-                        },
-                        candidates: side,
-                        lags: lags.clone(),
-                        spreads: spreads.as_ref(),
-                    };
-                    let done = join.run(nearest, &mut scratch, interrupt);
-                    if let Ok(mut spare) = spare.lock() {
-                        spare.push((loaded, scratch));
-                    }
-                    done
-                })?;
+                poses.load(*scene, start..end, at, &mut chunk);
+                let side = Side { features: chunk.features(), at, first: first + start, count: end - start };
+                let bounds = if bounded { Some(Bounds::new(measure, &side, interrupt)?) } else { None };
+                let each = |tasks: Range<usize>, work: &Work<'_, T>| {
+                    let nanoseconds = tasks.len() * TASK_FRAMES * side.count * measure.joints.len();
+                    parallel::for_each(tasks.collect(), nanoseconds, |_, task: usize| {
+                        interrupt.check()?;
+                        let kept = spare.lock().map_or(None, |mut spare| spare.pop());
+                        let (mut loaded, mut scratch) = kept.unwrap_or_default();
+                        let from = task * TASK_FRAMES;
+                        let to = frames.min(from + TASK_FRAMES);
+                        let count = to - from;
+                        let own = if !library && (start..end).contains(&from) {
+                            Side { at: at + from - start, first: from, count, ..side }
+                        } else {
+                            poses.load(clip, from..to, at, &mut loaded);
+                            Side { features: loaded.features(), at, first: from, count }
+                        };
+                        let join = Join {
+                            measure,
+                            frames: own,
+                            candidates: side,
+                            lags: lags.clone(),
+                            bounds: bounds.as_ref(),
+                            mutual,
+                        };
+                        let done = work(&join, &mut scratch);
+                        if let Ok(mut spare) = spare.lock() {
+                            spare.push((loaded, scratch));
+                        }
+                        done
+                    })
+                };
+                let tasks = if mutual {
+                    let own = start / TASK_FRAMES..end.div_ceil(TASK_FRAMES);
+                    each(own.clone(), &|join, scratch| {
+                        join.prepare(&lists, scratch);
+                        Ok(())
+                    })?;
+                    // Frames that come later look at these when they are candidates.
+                    0..own.end
+                } else {
+                    0..frames.div_ceil(TASK_FRAMES)
+                };
+                each(tasks, &|join, scratch| join.run(&lists, scratch, interrupt))?;
             }
             first += scene.frames();
         }
-        Ok(found)
+        Ok(lists.into_nearest())
     }
 }
 
@@ -173,61 +188,60 @@ impl PatchNeighbors {
 mod tests {
     use super::*;
 
-    const JOINTS: usize = 2;
-
     /// Swings that repeat more or less, with a jerk in one place.
-    fn clip<T: Real>(frames: usize, speed: f64) -> Vec<T> {
-        (0..frames * JOINTS)
+    fn clip<T: Real>(frames: usize, joints: usize, speed: f64) -> Vec<T> {
+        (0..frames * joints)
             .flat_map(|i| {
-                let (time, joint) = ((i / JOINTS) as f64 * speed, (i % JOINTS) as f64);
-                let jerk = if i / JOINTS == frames / 3 { 0.7 } else { 0.0 };
+                let (time, joint) = ((i / joints) as f64 * speed, (i % joints) as f64);
+                let jerk = if i / joints == frames / 3 { 0.7 } else { 0.0 };
                 let ((slow, _), (_, fast)) = (Real::sin_cos(time), Real::sin_cos(1.7 * time + joint));
-                let (sine, cosine) = Real::sin_cos((1.0 + joint) * (slow + 0.2 * fast) + jerk);
+                let (sine, cosine) = Real::sin_cos((1.0 + 0.3 * joint) * (slow + 0.2 * fast) + jerk);
                 [cosine, 0.6 * sine, 0.8 * sine, 0.0].map(T::from_f64)
             })
             .collect()
     }
 
-    fn passing_over_changes_nothing<T: Real>() -> Result<(), Error> {
+    fn measure<T: Real>(joints: usize) -> Measure<T> {
+        let ones = vec![T::ONE; joints];
+        Measure { before: 3, after: 3, joints: 0..joints, factors: ones.clone(), units: ones, averaged: true }
+    }
+
+    fn passing_over_changes_nothing<T: Real>(
+        cases: &[(usize, usize, f64)],
+        joints: usize,
+    ) -> Result<(), Error> {
         let interrupt = Interrupt::new();
-        let pad = 3 + MARGIN;
-        for (frames, others, speed) in [(300, 500, 0.03), (150, 41, 0.01), (130, 1, 0.5), (200, 900, 1.1)] {
-            let (q, r) = (clip::<T>(frames, speed), clip::<T>(others, 1.1 * speed));
-            let (q, r) = (ClipView::new(&q, frames, JOINTS)?, ClipView::new(&r, others, JOINTS)?);
+        for &(frames, others, speed) in cases {
+            let (q, r) = (clip::<T>(frames, joints, speed), clip::<T>(others, joints, 1.1 * speed));
+            let (q, r) = (ClipView::new(&q, frames, joints)?, ClipView::new(&r, others, joints)?);
             let poses = Poses::new(q, &[r], false, &interrupt)?;
             let (mut here, mut there) = (Loaded::default(), Loaded::default());
             poses.load(q, 0..frames, 3, &mut here);
-            poses.load(r, 0..others, pad, &mut there);
-            let ones = vec![T::ONE; JOINTS];
-            let measure = Measure {
-                before: 3,
-                after: 3,
-                joints: 0..JOINTS,
-                factors: ones.clone(),
-                units: ones,
-                averaged: true,
-            };
-            let side = Side { features: there.features(), at: pad, first: 0, count: others };
-            let spreads = Spreads::new(&measure, &side, &interrupt)?;
+            poses.load(r, 0..others, 3, &mut there);
+            let measure = measure::<T>(joints);
+            let side = Side { features: there.features(), at: 3, first: 0, count: others };
+            let bounds = Bounds::new(&measure, &side, &interrupt)?;
             let near = Lags { without: -7..=7, ..Lags::all() };
             let window = Lags { within: -90..=33, ..near.clone() };
             for lags in [Lags::all(), near, window] {
-                let found = [None, Some(&spreads)].map(|spreads| {
+                let found = [None, Some(&bounds)].map(|bounds| {
                     let join = Join {
                         measure: &measure,
                         frames: Side { features: here.features(), at: 3, first: 0, count: frames },
                         candidates: side,
                         lags: lags.clone(),
-                        spreads,
+                        bounds,
+                        mutual: false,
                     };
-                    let mut nearest = Nearest::new(0, frames, 5, Ties::Lower);
-                    join.run(&mut nearest, &mut Scratch::default(), &interrupt).map(|()| nearest)
+                    let lists = Lists::new(0, frames, frames, 5, Ties::Lower);
+                    join.run(&lists, &mut Scratch::default(), &interrupt)
+                        .map(|()| lists.into_nearest().collect::<Vec<_>>())
                 });
                 let [all, some] = found;
                 let (all, some) = (all?, some?);
                 for frame in 0..frames {
                     assert!(
-                        all.of(frame).eq(some.of(frame)),
+                        all[0].of(frame).eq(some[0].of(frame)),
                         "frame {frame} of {frames}, {others} candidates"
                     );
                 }
@@ -236,9 +250,69 @@ mod tests {
         Ok(())
     }
 
+    /// Some frames of a clip, whose pairs are looked at once, beside all of their pairs.
+    fn looking_once_changes_nothing<T: Real>(
+        (frames, joints): (usize, usize),
+        some: &[Range<usize>],
+    ) -> Result<(), Error> {
+        let interrupt = Interrupt::new();
+        let count = 5;
+        let q = clip::<T>(frames, joints, 0.03);
+        let q = ClipView::new(&q, frames, joints)?;
+        let search = PatchNeighbors { patch_radius: 3, count, exclusion: 7, weights: vec![1.0; joints] };
+        let (mut indices, mut distances) = (vec![0; count * frames], vec![T::ZERO; count * frames]);
+        search.search(q, None, &mut indices, &mut distances, &interrupt)?;
+        let poses = Poses::new(q, &[q], false, &interrupt)?;
+        let mut all = Loaded::default();
+        poses.load(q, 0..frames, 3, &mut all);
+        let measure = measure::<T>(joints);
+        let candidates = Side { features: all.features(), at: 3, first: 0, count: frames };
+        for range in some {
+            let (first, length) = (range.start, range.len());
+            let join = Join {
+                measure: &measure,
+                frames: Side { at: 3 + first, first, count: length, ..candidates },
+                candidates,
+                lags: Lags { without: -7..=7, ..Lags::all() },
+                bounds: None,
+                mutual: false,
+            };
+            let lists = Lists::new(first, length, length, count, Ties::Lower);
+            join.run(&lists, &mut Scratch::default(), &interrupt)?;
+            for nearest in lists.into_nearest() {
+                for frame in range.clone() {
+                    let row = count * frame..count * (frame + 1);
+                    let found = distances[row.clone()].iter().copied().zip(indices[row].iter().copied());
+                    let expected =
+                        nearest.of(frame - first).map(|(d, n)| (d, i64::try_from(n).unwrap_or(NOBODY)));
+                    assert!(expected.eq(found), "frame {frame} of {frames}");
+                }
+            }
+        }
+        Ok(())
+    }
+
     #[test]
     fn what_is_passed_over_is_not_missed() -> Result<(), Error> {
-        passing_over_changes_nothing::<f32>()?;
-        passing_over_changes_nothing::<f64>()
+        let cases = [(300, 500, 0.03), (150, 41, 0.01), (130, 1, 0.5), (200, 900, 1.1)];
+        passing_over_changes_nothing::<f32>(&cases, 2)?;
+        passing_over_changes_nothing::<f64>(&cases, 2)
+    }
+
+    #[test]
+    fn no_points_are_missed() -> Result<(), Error> {
+        let cases = [(140, 2305, 0.03), (131, 2100, 0.5)];
+        passing_over_changes_nothing::<f32>(&cases, 9)?;
+        passing_over_changes_nothing::<f64>(&cases, 9)
+    }
+
+    #[test]
+    fn a_pair_that_is_looked_at_once_counts_for_both() -> Result<(), Error> {
+        looking_once_changes_nothing::<f32>((2305, 9), &[0..2305])?;
+        looking_once_changes_nothing::<f64>((300, 2), &[0..300])?;
+        // Of two chunks.
+        let frames = CHUNK_FRAMES + 700;
+        let some = [0..60, CHUNK_FRAMES - 30..CHUNK_FRAMES + 30, frames - 60..frames];
+        looking_once_changes_nothing::<f32>((frames, 1), &some)
     }
 }

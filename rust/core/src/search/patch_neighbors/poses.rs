@@ -13,6 +13,9 @@ use std::ops::Range;
 /// apart: 45°, less what roundings could add.
 const NARROW: f64 = std::f64::consts::FRAC_1_SQRT_2 + 1e-5;
 
+/// Frames whose mean serves as the centre of all: what is found does not depend on it.
+const SAMPLE: usize = 1024;
+
 /// Planes of a joint.
 const PER_JOINT: usize = 4;
 
@@ -40,7 +43,7 @@ impl<T: Real> Loaded<T> {
 }
 
 impl<T: Real> Poses<T> {
-    /// Looks through a clip, whose means are the centres, and through others; `shared` asks for shares of samples even if
+    /// Looks through a clip, near whose means the centres are, and through others; `shared` asks for shares of samples even if
     /// none is missing.
     pub(crate) fn new(
         clip: ClipView<'_, T>,
@@ -50,7 +53,11 @@ impl<T: Real> Poses<T> {
     ) -> Result<Self, Error> {
         let joints = clip.joints();
         let one = [T::ONE, T::ZERO, T::ZERO, T::ZERO];
-        let centres: Vec<[T; 4]> = mean(clip, None, interrupt)?
+        let stride = clip.frames().div_ceil(SAMPLE).max(1);
+        let rows = clip.data().chunks_exact(4 * joints.max(1)).step_by(stride);
+        let sample: Vec<T> = rows.flatten().copied().collect();
+        let sample = ClipView::new(&sample, clip.frames().div_ceil(stride), joints)?;
+        let centres: Vec<[T; 4]> = mean(sample, None, interrupt)?
             .iter()
             .map(|centre| if centre[0].is_nan() { one } else { centre.map(T::from_f64) })
             .collect();

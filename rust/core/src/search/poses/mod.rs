@@ -27,4 +27,5 @@ pub use index::Index;
 pub use kernels::Probe;
 pub(crate) use kernels::squares_of;
 pub use nearest::{Nearest, nearest};
+pub(crate) use principal::directions;
 pub use segments::{Layout, Segments};

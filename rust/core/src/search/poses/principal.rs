@@ -11,7 +11,7 @@ const ROUNDS: usize = 6;
 
 /// Up to `width` directions at right angles, `(width, dims)`, along which most of the variance of the poses lies; zeros where
 /// there are fewer.
-pub(super) fn directions<T: Real>(segments: &Segments<'_, T>, width: usize) -> Vec<f64> {
+pub(crate) fn directions<T: Real>(segments: &Segments<'_, T>, width: usize) -> Vec<f64> {
     let dims = segments.dims();
     let covariance = covariance(segments);
     let mut order: Vec<usize> = (0..dims).collect();
