@@ -308,8 +308,8 @@ mod tests {
 
     #[test]
     fn a_pair_that_is_looked_at_once_counts_for_both() -> Result<(), Error> {
-        looking_once_changes_nothing::<f32>((2305, 9), &[0..2305])?;
-        looking_once_changes_nothing::<f64>((300, 2), &[0..300])?;
+        looking_once_changes_nothing::<f32>((2305, 9), &[0..100, 100..2305])?;
+        looking_once_changes_nothing::<f64>((300, 2), &[0..100, 100..300])?;
         // Of two chunks.
         let frames = CHUNK_FRAMES + 700;
         let some = [0..60, CHUNK_FRAMES - 30..CHUNK_FRAMES + 30, frames - 60..frames];
