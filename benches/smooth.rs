@@ -1,9 +1,11 @@
-//! Automatic smoothing: each joint by itself, all together, and groups of similar patches.
+//! Automatic smoothing: each joint by itself, all together, groups of similar patches, and low rank.
 
 use quatfilt_benches::clips::{self, NOISE};
 use quatfilt_benches::timer::Timer;
 use quatfilt_core::filters::development::Input;
-use quatfilt_core::filters::smooth::{Noisy, REFERENCE_SIGMA, Smoother, smooth_body, smooth_patches};
+use quatfilt_core::filters::smooth::{
+    Noisy, REFERENCE_SIGMA, Smoother, smooth_body, smooth_patches, smooth_rank,
+};
 use quatfilt_core::parallel::Interrupt;
 use quatfilt_core::{ClipMut, ClipView, Error, Real};
 
@@ -36,5 +38,8 @@ fn smooth<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error>
     })?;
     timer.threads::<T, _, _>("filters/smooth_patches", size, || {
         smooth_patches(&noisy, 1, ClipMut::new(&mut out, frames, joints)?, &interrupt)
+    })?;
+    timer.threads::<T, _, _>("filters/smooth_rank", size, || {
+        smooth_rank(&noisy, ClipMut::new(&mut out, frames, joints)?, &interrupt)
     })
 }

@@ -72,6 +72,7 @@ __all__ = [
     "smooth",
     "smooth_body",
     "smooth_patches",
+    "smooth_rank",
     "solve_pose",
     "split_heading",
     "to_euler",
@@ -239,6 +240,9 @@ def smooth_body(q: Array, pilot: Array, confidence: Array | None, noise: NDArray
 def smooth_patches(
     q: Array, pilot: Array, confidence: Array | None, noise: NDArray[np.float64], rounds: int, /
 ) -> Array: ...
+
+# filters/smooth/rank
+def smooth_rank(q: Array, pilot: Array, confidence: Array | None, noise: NDArray[np.float64], /) -> Array: ...
 
 # filters/stream
 @final

@@ -25,6 +25,7 @@ from quatfilt._reference.filters.orientation_filter import orientation_filter
 from quatfilt._reference.filters.savgol import savgol, savgol_derivative
 from quatfilt._reference.filters.smooth.body import smooth_body
 from quatfilt._reference.filters.smooth.patches import smooth_patches
+from quatfilt._reference.filters.smooth.rank import smooth_rank
 from quatfilt._reference.filters.smooth.smooth import smooth
 from quatfilt._reference.filters.weighted_moving_mean import weighted_moving_mean
 from quatfilt._reference.geodesics.body.body import body_geodesics, body_product, body_scores
@@ -108,6 +109,7 @@ __all__ = [
     "smooth",
     "smooth_body",
     "smooth_patches",
+    "smooth_rank",
     "solve_pose",
     "split_heading",
     "to_euler",

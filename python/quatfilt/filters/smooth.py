@@ -49,9 +49,9 @@ def smooth(
     strength : float or array_like (joints,), default 1.0
         By how much more noise is taken for granted than the clip is estimated to have, up to 1e6; 0 changes nothing.
     joints : {"apart", "together"}, default "apart"
-        With ``"together"`` two more steps follow: all joints are smoothed along the principal axes of the whole body, and then
-        groups of similar patches of motion, wherever they are within 256 frames. What repeats itself, in time or between joints,
-        is kept, and noise is not. Takes about ten times as long.
+        With ``"together"`` three more steps follow: all joints are smoothed along the principal axes of the whole body, then
+        groups of similar patches of motion, wherever they are within 256 frames, and then all joints as few movements at a
+        time. What repeats itself, in time or between joints, is kept, and noise is not. Takes more than ten times as long.
     confidence : array_like or None, shape (frames,) or (frames, joints), default None
         Weights of the samples, from 0 to 1; NaN counts as 0. Samples that were filled in have 0. What has 0 is filled in from
         its neighbours, and counts as a hundredth.
@@ -143,6 +143,7 @@ def with_translation(
         if together:
             result = ops().smooth_body(rotations, result, trust, levels)
             result = ops().smooth_patches(rotations, result, trust, levels, _PATCH_ROUNDS)
+            result = ops().smooth_rank(rotations, result, trust, levels)
         return cast("Array", result), cast("Array | None", moved)
 
     return _development.filtered(clip, translation, run)

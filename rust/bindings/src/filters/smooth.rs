@@ -1,6 +1,7 @@
 //! Automatic smoothing.
 
 pub(crate) mod patches;
+pub(crate) mod rank;
 
 use super::development::{Arguments, filtered};
 use crate::array::{by_dtype, clip, clip_mut, elements, input, output, run_interruptible};

@@ -163,7 +163,7 @@ fn turned(
 
 multiversion! {
     /// Inner product, the same at every level: partial sums side by side.
-    fn inner_product<T: Real>(a: &[T], b: &[T]) -> T {
+    pub(super) fn inner_product<T: Real>(a: &[T], b: &[T]) -> T {
         /// Partial sums: two vectors of float64 at the widest level.
         const LANES: usize = 16;
         let (a, a_rest) = a.as_chunks::<LANES>();

@@ -10,7 +10,8 @@
 //! - `joint`: one joint along its axes;
 //! - `about`: the vectors of all joints about a pilot;
 //! - `body`: all joints together along the axes of the body;
-//! - `patches`: all joints by groups of similar patches.
+//! - `patches`: all joints by groups of similar patches;
+//! - `rank`: all joints as few movements at a time.
 
 mod about;
 mod axes;
@@ -18,6 +19,7 @@ mod body;
 mod joint;
 mod patches;
 mod penalised;
+mod rank;
 mod spectrum;
 mod strength;
 
@@ -29,6 +31,7 @@ use crate::parallel::Interrupt;
 pub use about::Noisy;
 pub use body::smooth_body;
 pub use patches::smooth_patches;
+pub use rank::smooth_rank;
 use strength::Candidates;
 
 /// Deviation in frames of the Gaussian mask that makes the first reference path, without noise; heavy noise asks for more.
