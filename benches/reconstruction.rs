@@ -56,10 +56,12 @@ fn predictions<T: Real>(
     let neighbors = Neighbors {
         segments: &segments,
         root_steps: &root_steps,
+        differences: &[],
         count,
         frames: ORDER + 1,
         joints,
         roots: 4,
+        signals: 0,
     };
     let options = Options { model, ..Options::default() };
     let weights = vec![1.0; joints];

@@ -28,6 +28,7 @@ def predict(
     recent,
     model="local_regression",
     *,
+    signals=None,
     target="pose",
     deviation="predictive",
     weights=None,
@@ -37,8 +38,9 @@ def predict(
 ):
     """Chart, mean, deviation and axes."""
     weights = np.ones(segments.shape[2]) if weights is None else weights
+    signals = np.zeros((len(segments), 0), segments.dtype) if signals is None else signals
     return backend.predict_pose(
-        segments, steps, recent, weights, model, target, deviation, bandwidth, ridge, share
+        segments, steps, signals, recent, weights, model, target, deviation, bandwidth, ridge, share
     )
 
 

@@ -364,6 +364,7 @@ def split_heading(roots: Array, up: int, /) -> tuple[Array, Array]: ...
 def predict_pose(
     segments: Array,
     root_steps: Array,
+    signals: Array,
     recent: Array,
     joint_weights: NDArray[np.float64],
     model: str,

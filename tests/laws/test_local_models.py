@@ -7,7 +7,7 @@ import tolerances
 from drawn import seeds
 from hypothesis import given
 from hypothesis import strategies as st
-from local_models import MODELS, REGRESSIONS, examples, pose, predict
+from local_models import MODELS, REGRESSIONS, examples, pose, predict, vectors
 
 models = st.sampled_from(MODELS)
 targets = st.sampled_from(["pose", "change"])
@@ -162,3 +162,31 @@ def test_float32(backend, model):
     assert all(part.dtype == np.float64 for part in narrow)
     # A rounding of float32 is 6e-8, and grows by the ridge of a hundredth.
     np.testing.assert_allclose(narrow[1], wide[1], atol=1e-4)
+
+
+@given(seed=seeds)
+def test_what_signals_alone_tell_is_predicted_from_them(backend, seed):
+    rng = np.random.default_rng(seed)
+    signals = rng.standard_normal((12, 2))
+    # The poses before are all the same: turns about one axis follow the signals, and signals of 0 mean a turn of 0.4.
+    turns = np.zeros((12, 1, 3))
+    turns[:, 0, 1] = 0.4 + signals @ [0.1, -0.2]
+    still = np.tile([1.0, 0.0, 0.0, 0.0], (12, 2, 1, 1))
+    segments = np.concatenate([still, clips.from_vectors(turns)[:, None]], axis=1)
+    steps = signals @ [[1.0], [3.0]] - 2.0
+    for model in ("local_regression", "local_pcr"):
+        found = predict(
+            backend, segments, steps, segments[0, :-1].copy(), model, signals=signals, ridge=1e-9, share=1.0
+        )
+        np.testing.assert_allclose(vectors(np.eye(4)[:1], pose(found)), [0.0, 0.4, 0.0], atol=1e-6)
+        np.testing.assert_allclose(found[1][-1], -2.0, atol=1e-6)
+
+
+@given(seed=seeds, model=models, target=targets, count=counts)
+def test_signals_that_are_none_change_nothing(backend, seed, model, target, count):
+    rng = np.random.default_rng(seed)
+    segments, steps, recent = examples(rng, count, 2, 3)
+    without = predict(backend, segments, steps, recent, model, target=target)
+    zeros = predict(backend, segments, steps, recent, model, target=target, signals=np.zeros((count, 3)))
+    for a, b in zip(without[:3], zeros[:3], strict=True):
+        np.testing.assert_allclose(a, b, atol=tolerances.LOCAL_MODELS)

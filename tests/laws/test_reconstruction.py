@@ -166,6 +166,34 @@ def test_a_past_settles_the_start():
     assert qf.metrics.angle_error(rest.rotations[:1], result.rotations[:1]) < 3.0
 
 
+def test_where_a_wrong_past_stands_is_put_right_at_once():
+    walk = walkers.walker(12)
+    past, rest = walkers.part(walk, slice(0, 3)), walkers.part(walk, slice(3, 12))
+    turns = past.rotations.copy()
+    turns[:, 0] = qf.multiply(qf.exp(np.tile([0.0, 0.5, 0.0], (3, 1))), turns[:, 0])
+    places = walkers.turned(past.translation, 1.0, np.array([50.0, 0.0, 0.0]))
+    wrong = past.replace(rotations=turns, translation=places)
+    errors = []
+    for scale in (None, np.inf):
+        one = reconstructor(skeleton=walk.skeleton, control_scale=scale)
+        result = one.reconstruct(walkers.seen(rest), fps=60, initial=wrong)
+        errors.append(
+            qf.metrics.position_error(walkers.part(rest, slice(0, 1)), walkers.part(result, slice(0, 1)))
+        )
+    assert errors[0] < 1.0
+    assert errors[1] > 10.0
+
+
+def test_points_above_each_other_tell_no_heading():
+    walk = walkers.walker(20)
+    past, rest = walkers.part(walk, slice(0, 3)), walkers.part(walk, slice(3, 20))
+    joints = ("Hips", "Head")
+    one = reconstructor(control_points=joints, skeleton=walk.skeleton)
+    still = walkers.seen(rest, joints)[:1].repeat(17, 0)
+    result = one.reconstruct(still, fps=60, initial=past)
+    assert qf.metrics.angle_error(rest.rotations[:1].repeat(17, 0)[:, :1], result.rotations[:, :1]) < 5.0
+
+
 def test_a_graph_in_which_all_know_all_changes_nothing():
     positions = walkers.seen(walkers.walker(20))
     options = {"control_points": walkers.JOINTS, "neighbors": 16}

@@ -158,6 +158,7 @@ def predict_pose(
     chart, mean, spread, axes = ops().predict_pose(
         examples,
         steps,
+        np.zeros((len(examples), 0), examples.dtype),
         poses,
         weights,
         kind,

@@ -37,15 +37,19 @@ def agree(given_examples, model, **options):
     bandwidth=st.sampled_from([0.0, 0.3]),
     ridge=st.sampled_from([1e-4, 0.01, 1.0]),
     share=st.sampled_from([0.5, 0.97]),
+    signals=st.sampled_from([0, 1, 24]),
     dtype=dtypes,
 )
-def test_of_motion(seed, model, target, deviation, count, order, joints, bandwidth, ridge, share, dtype):
+def test_of_motion(
+    seed, model, target, deviation, count, order, joints, bandwidth, ridge, share, signals, dtype
+):
     rng = np.random.default_rng(seed)
     segments, steps, recent = examples(rng, count, order, joints)
     segments, recent = (clips.flipped(rng, q) * rng.uniform(0.99, 1.01) for q in (segments, recent))
     agree(
         [np.ascontiguousarray(array, dtype) for array in (segments, steps, recent)],
         model,
+        signals=np.ascontiguousarray(rng.standard_normal((count, signals)), dtype),
         target=target,
         deviation=deviation,
         weights=rng.random(joints),

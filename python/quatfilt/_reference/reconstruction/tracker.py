@@ -14,11 +14,11 @@ from quatfilt._reference.reconstruction.examples import (
     begin,
     follow,
     nearest,
-    ways,
     within,
 )
 from quatfilt._reference.reconstruction.kinematics import WAY, Base, Body, Floats, pose
 from quatfilt._reference.reconstruction.local_models.predict import predict_pose
+from quatfilt._reference.reconstruction.signals import signals
 from quatfilt._reference.reconstruction.solver import Prior, Targets, energy, solve
 from quatfilt._reference.rotations.quaternion import between, log_short
 
@@ -39,7 +39,8 @@ class Options(NamedTuple):
     window : array (n,) of int64
         How many frames ago control points are compared; the first is 0.
     scale : float
-        Distance of control points that counts as much as a radian between poses; infinite: poses alone.
+        Distance of control points that counts as much as a radian between poses; infinite: poses alone, in the search and in the
+        models.
     patience : int
         After so many frames without a control point the next one is a new start.
     floor : array (5,)
@@ -216,10 +217,11 @@ def next_pose(
     poses, how = search.poses, search.how
     found = search.next(state, sight)
     segments = poses.rotations[found[:, None] + np.arange(-how.order, 1)].astype(np.float64)
-    roots = ways(poses, found, body.up)
+    differences, roots = signals(poses, found, state, sight, body.up, how.scale)
     chart, mean, deviation, axes = predict_pose(
         segments,
         roots,
+        differences,
         within(segments, state.recent, poses.joint_weights),
         poses.joint_weights,
         *how.model,

@@ -56,7 +56,7 @@ class MotionReconstructor:
         When examples are looked for, control points that are so far off count as much as poses a radian apart. Infinite:
         poses alone count, as in the paper; a wrong pose then finds examples as wrong, and is kept. None: six hundredths of
         the longest chain, about 7 cm.
-    ridge : float, default 0.1
+    ridge : float, default 0.5
         As in `predict_pose`.
 
     Attributes
@@ -130,7 +130,7 @@ class MotionReconstructor:
         control_noise: float | None = None,
         orientation_noise: float = 0.05,
         control_scale: float | None = None,
-        ridge: float = 0.1,
+        ridge: float = 0.5,
     ) -> None:
         if not isinstance(database, MotionDatabase):
             raise TypeError(f"database: expected a MotionDatabase, got {type(database).__name__}")

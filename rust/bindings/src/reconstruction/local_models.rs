@@ -13,14 +13,15 @@ use quatfilt_core::reconstruction::local_models::{
 type Arrays = (Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>);
 
 /// Chart, mean, deviation and axes, `(joints, 4)`, `(D)`, `(D)` and `(D, rank)`, from `(K, m + 1, joints, 4)`, `(K, R)`,
-/// `(m, joints, 4)` and `(joints)`.
+/// `(K, S)`, `(m, joints, 4)` and `(joints)`.
 #[pyfunction]
-#[pyo3(signature = (segments, root_steps, recent, joint_weights, model, target, deviation, bandwidth, ridge, share, /))]
+#[pyo3(signature = (segments, root_steps, signals, recent, joint_weights, model, target, deviation, bandwidth, ridge, share, /))]
 #[allow(clippy::too_many_arguments, reason = "those of the reference")]
 pub(crate) fn predict_pose(
     py: Python<'_>,
     segments: &Bound<'_, PyAny>,
     root_steps: &Bound<'_, PyAny>,
+    signals: &Bound<'_, PyAny>,
     recent: &Bound<'_, PyAny>,
     joint_weights: &Bound<'_, PyAny>,
     model: &str,
@@ -37,16 +38,23 @@ pub(crate) fn predict_pose(
         let segments = input::<T>("segments", segments)?;
         let root_steps = input::<T>("root_steps", root_steps)?;
         let recent = input::<T>("recent", recent)?;
-        let (&[count, frames, joints, 4], &[_, roots]) = (segments.shape(), root_steps.shape()) else {
-            return Err(PyValueError::new_err("segments: expected shape (K, m + 1, joints, 4), root_steps: (K, R)"));
+        let differences = input::<T>("signals", signals)?;
+        let (&[count, frames, joints, 4], &[_, roots], &[_, signals]) =
+            (segments.shape(), root_steps.shape(), differences.shape())
+        else {
+            return Err(PyValueError::new_err(
+                "segments: expected shape (K, m + 1, joints, 4), root_steps: (K, R), signals: (K, S)",
+            ));
         };
         let neighbors = Neighbors {
             segments: elements("segments", &segments)?,
             root_steps: elements("root_steps", &root_steps)?,
+            differences: elements("signals", &differences)?,
             count,
             frames,
             joints,
             roots,
+            signals,
         };
         let recent = elements("recent", &recent)?;
         let work = (count.saturating_mul(count)).saturating_mul(count + frames * joints * 3);

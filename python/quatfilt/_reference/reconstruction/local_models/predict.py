@@ -21,6 +21,7 @@ from quatfilt._reference.reconstruction.local_models.regression import regressio
 def predict_pose(
     segments: Reals,
     root_steps: Reals,
+    signals: Reals,
     recent: Reals,
     joint_weights: Reals,
     model: str,
@@ -38,6 +39,9 @@ def predict_pose(
         Examples: m poses, the oldest first, and the next one. No sample is missing.
     root_steps : array (K, R)
         What else is to be predicted of the next pose: steps forward and sideways, height, turn, in their own units.
+    signals : array (K, S)
+        What else the examples are compared by and predicted from, in radians or what counts like them: differences from the query, whose
+        own are 0.
     recent : array (m, joints, 4)
         The last m poses, the oldest first.
     joint_weights : array (joints,), float64
@@ -79,6 +83,10 @@ def predict_pose(
         outputs[:, :numbers] -= inputs[:, -numbers:]
         last[:numbers] = query[-numbers:]
     scale = np.tile(np.repeat(joint_weights, 3), frames - 1)
+    inputs = np.concatenate([inputs, signals.astype(np.float64)], axis=1)
+    query, scale = (
+        np.concatenate([row, np.full(signals.shape[1], x)]) for row, x in ((query, 0.0), (scale, 1.0))
+    )
     examples = gather(inputs, outputs, query, scale, bandwidth, ridge)
     mean, spread, axes = predicted(examples, model, deviation, share)
     return chart, last + mean, np.maximum(spread, LEAST_DEVIATION), axes

@@ -8,16 +8,16 @@ use crate::rotations::quaternion::{between, dot, log_short, of_row, unit};
 use crate::simd::multiversion;
 
 /// Charts of all joints, and the rotation vectors of the examples in them, a row for each coordinate: those of the frames before
-/// the last one, and those of the last, which are followed by `more` rows of zeros.
+/// the last one, and those of the last. Each are followed by so many rows of zeros as `more` says.
 ///
 /// A chart touches where the renormalised mean of all poses lies, with signs as seen from the first example's last pose but one.
 pub(super) fn vectors<T: Real>(
     segments: &[T],
     (count, frames, joints): (usize, usize, usize),
-    more: usize,
+    more: [usize; 2],
 ) -> (Vec<[f64; 4]>, Matrix, Matrix) {
-    let mut inputs = Matrix::new((frames - 1) * joints * 3, count);
-    let mut outputs = Matrix::new(joints * 3 + more, count);
+    let mut inputs = Matrix::new((frames - 1) * joints * 3 + more[0], count);
+    let mut outputs = Matrix::new(joints * 3 + more[1], count);
     let width = inputs.width();
     let mut components = Planes::new(1, frames * 4 * width);
     let mut charts = Vec::with_capacity(joints);

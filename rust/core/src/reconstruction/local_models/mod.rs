@@ -96,6 +96,9 @@ pub struct Neighbors<'a, T> {
     pub segments: &'a [T],
     /// `(count, roots)`: what else is to be predicted of the next pose.
     pub root_steps: &'a [T],
+    /// `(count, signals)`: what else they are compared by and predicted from, in radians or what counts like them: differences from the
+    /// query, whose own are 0.
+    pub differences: &'a [T],
     /// K.
     pub count: usize,
     /// m + 1.
@@ -104,6 +107,8 @@ pub struct Neighbors<'a, T> {
     pub joints: usize,
     /// R.
     pub roots: usize,
+    /// S.
+    pub signals: usize,
 }
 
 /// The next pose, and how far the truth may lie from it.
@@ -133,16 +138,18 @@ pub fn predict_pose<T: Real>(
     options: &Options,
     interrupt: &Interrupt,
 ) -> Result<Prediction, Error> {
-    let &Neighbors { segments, root_steps, count, frames, joints, roots } = neighbors;
+    let &Neighbors { segments, root_steps, differences, count, frames, joints, roots, signals } = neighbors;
     if count == 0 || frames < 2 || joints == 0 {
         return Err(Error::Parameter { name: "segments", expected: "examples of two poses of some joints" });
     }
     check_length("segments", count * frames * joints * 4, segments.len())?;
     check_length("root_steps", count * roots, root_steps.len())?;
+    check_length("differences", count * signals, differences.len())?;
     check_length("recent", (frames - 1) * joints * 4, recent.len())?;
     check_length("joint_weights", joints, joint_weights.len())?;
-    let (chart, inputs, mut outputs) = chart::vectors(segments, (count, frames, joints), roots);
-    let query = chart::of_poses(recent, &chart);
+    let (chart, mut inputs, mut outputs) =
+        chart::vectors(segments, (count, frames, joints), [signals, roots]);
+    let mut query = chart::of_poses(recent, &chart);
     let change = options.target == Target::Change;
     let numbers = joints * 3;
     let mut last = vec![0.0; numbers + roots];
@@ -154,15 +161,22 @@ pub fn predict_pose<T: Real>(
             *x = steps[root].to_f64();
         }
     }
+    for (signal, row) in inputs.rows_mut().skip(query.len()).enumerate() {
+        for (x, differences) in row.iter_mut().zip(differences.chunks_exact(signals)) {
+            *x = differences[signal].to_f64();
+        }
+    }
     if change {
-        let before = inputs.rows().skip(query.len() - numbers);
+        let before = inputs.rows().skip(query.len() - numbers).take(numbers);
         for (row, before) in outputs.rows_mut().zip(before) {
             for (x, before) in row.iter_mut().zip(before) {
                 *x -= before;
             }
         }
     }
-    let scale: Vec<f64> = (0..query.len()).map(|number| joint_weights[number / 3 % joints]).collect();
+    let mut scale: Vec<f64> = (0..query.len()).map(|number| joint_weights[number / 3 % joints]).collect();
+    query.resize(query.len() + signals, 0.0);
+    scale.resize(query.len(), 1.0);
     let examples = Examples::gather(inputs, outputs, query, &scale, options);
     let (mut mean, mut deviation, axes, rank) = predicted(&examples, options, interrupt)?;
     for (x, last) in mean.iter_mut().zip(&last) {

@@ -5,6 +5,7 @@ mod poses;
 mod recent;
 mod search;
 mod sight;
+mod signals;
 mod tables;
 mod trails;
 mod walk;
@@ -26,6 +27,7 @@ use lattice::Lattice;
 use recent::Recent;
 use search::{Example, Query};
 use sight::Sight;
+use signals::Signals;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use tables::Shape;
@@ -46,7 +48,8 @@ pub struct Options {
     pub spacing: usize,
     /// How many frames ago control points are compared.
     pub window: Vec<usize>,
-    /// Distance of control points that counts as much as a radian between poses; infinite: poses alone.
+    /// Distance of control points that counts as much as a radian between poses, where examples are looked for and where they are
+    /// learned from; infinite: poses alone.
     pub scale: f64,
     /// After so many frames without a control point the next one is a new start.
     pub patience: usize,
@@ -280,18 +283,21 @@ impl Tracker {
         let (joints, up) = (self.solver.body().joints(), self.solver.body().up);
         let order = self.options.order;
         let mut segments = Vec::with_capacity(found.len() * (order + 1) * joints * 4);
-        let mut root_steps = Vec::with_capacity(found.len() * WAY);
+        let points = self.solver.body().points();
+        let signals =
+            Signals::new(poses, (points, up), found, &self.sight, (state, order), self.options.scale);
         for example in found.iter().map(|found| found.pose) {
             segments.extend(poses.segment(example - order..example + 1).iter().copied().map(f64::from));
-            root_steps.extend(poses.way(example, up));
         }
         let neighbors = Neighbors {
             segments: &segments,
-            root_steps: &root_steps,
+            root_steps: &signals.ways,
+            differences: &signals.differences,
             count: found.len(),
             frames: order + 1,
             joints,
             roots: WAY,
+            signals: signals.count,
         };
         let query = within(&segments, &state.recent, poses.joint_weights);
         let mut prediction =
@@ -305,7 +311,7 @@ impl Tracker {
         for (q, &centre) in nearest.chunks_exact(4).zip(&prediction.chart) {
             example.extend(log_short(between(centre, of_row(q))).map(|v| 2.0 * v));
         }
-        example.extend(&root_steps[..WAY]);
+        example.extend(&signals.ways[..WAY]);
         let base = Base {
             centres: prediction.chart.as_flattened().to_vec(),
             place: state.place,

@@ -153,11 +153,57 @@ impl Sight {
 
     /// By how much a pose is turned, and moved after the turn.
     pub(super) fn laid(&self, fit: &Fit) -> (f64, [f64; 2]) {
-        let [re, im] = fit.product;
-        let length = (re * re + im * im).sqrt();
-        let (c, s) = if length > 0.0 { (re / length, im / length) } else { (1.0, 0.0) };
+        let [c, s] = fit.direction();
         let angle = crate::Real::atan2_nonnegative(s.abs(), c).copysign(s);
         let moved = [c * fit.mean[0] - s * fit.mean[1], s * fit.mean[0] + c * fit.mean[1]];
         (angle, [self.mean[0] - moved[0], self.mean[1] - moved[1]])
+    }
+
+    /// Whether the points lie farther than `scale` from their middle as seen from above, root mean square: nearer ones do not tell
+    /// a heading.
+    pub(super) fn tells_heading(&self, scale: f64) -> bool {
+        self.spread > scale * scale
+    }
+
+    /// Puts behind others what is left between the points and a pose that is laid on them, as seen from a heading (its cosine and
+    /// sine): three numbers for each, times the root of its share and a factor.
+    pub(super) fn left(
+        &self,
+        poses: &Poses<'_>,
+        points: usize,
+        (candidate, fit): (usize, &Fit),
+        up: usize,
+        [cosine, sine]: [f64; 2],
+        factor: f64,
+        out: &mut Vec<f64>,
+    ) {
+        let [first, second] = HORIZONTAL[up];
+        let [c, s] = fit.direction();
+        for seen in &self.seen {
+            let row = 3 * ((candidate - seen.lag) * points + seen.point);
+            let at = &poses.trails[row..row + 3];
+            let z = [f64::from(at[first]) - fit.mean[0], f64::from(at[second]) - fit.mean[1]];
+            let x = c * z[0] - s * z[1] - seen.level[0];
+            let y = s * z[0] + c * z[1] - seen.level[1];
+            let above = f64::from(at[up]) - seen.height;
+            let factor = factor * seen.share.sqrt();
+            out.extend([cosine * x + sine * y, cosine * y - sine * x, above].map(|left| factor * left));
+        }
+    }
+
+    /// Where a place on the ground comes when a pose is laid on the points.
+    pub(super) fn moved(&self, fit: &Fit, place: [f64; 2]) -> [f64; 2] {
+        let [c, s] = fit.direction();
+        let z = [place[0] - fit.mean[0], place[1] - fit.mean[1]];
+        [c * z[0] - s * z[1] + self.mean[0], s * z[0] + c * z[1] + self.mean[1]]
+    }
+}
+
+impl Fit {
+    /// Cosine and sine of the turn.
+    fn direction(&self) -> [f64; 2] {
+        let [re, im] = self.product;
+        let length = (re * re + im * im).sqrt();
+        if length > 0.0 { [re / length, im / length] } else { [1.0, 0.0] }
     }
 }
