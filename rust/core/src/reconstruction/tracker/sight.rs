@@ -165,30 +165,24 @@ impl Sight {
         self.spread > scale * scale
     }
 
-    /// Puts behind others what is left between the points and a pose that is laid on them, as seen from a heading (its cosine and
-    /// sine): three numbers for each, times the root of its share and a factor.
-    pub(super) fn left(
-        &self,
-        poses: &Poses<'_>,
+    /// What is left between the points and a pose that is laid on them: two level coordinates and the height of each, and its share.
+    pub(super) fn left<'a>(
+        &'a self,
+        poses: &'a Poses<'_>,
         points: usize,
-        (candidate, fit): (usize, &Fit),
+        (candidate, fit): (usize, &'a Fit),
         up: usize,
-        [cosine, sine]: [f64; 2],
-        factor: f64,
-        out: &mut Vec<f64>,
-    ) {
+    ) -> impl Iterator<Item = ([f64; 3], f64)> + 'a {
         let [first, second] = HORIZONTAL[up];
         let [c, s] = fit.direction();
-        for seen in &self.seen {
+        self.seen.iter().map(move |seen| {
             let row = 3 * ((candidate - seen.lag) * points + seen.point);
             let at = &poses.trails[row..row + 3];
             let z = [f64::from(at[first]) - fit.mean[0], f64::from(at[second]) - fit.mean[1]];
             let x = c * z[0] - s * z[1] - seen.level[0];
             let y = s * z[0] + c * z[1] - seen.level[1];
-            let above = f64::from(at[up]) - seen.height;
-            let factor = factor * seen.share.sqrt();
-            out.extend([cosine * x + sine * y, cosine * y - sine * x, above].map(|left| factor * left));
-        }
+            ([x, y, f64::from(at[up]) - seen.height], seen.share)
+        })
     }
 
     /// Where a place on the ground comes when a pose is laid on the points.

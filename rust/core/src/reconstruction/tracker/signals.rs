@@ -42,8 +42,11 @@ impl Signals {
         for example in found.iter().map(|found| found.pose) {
             if signals.count > 0 {
                 let fit = sight.fit(poses, points, example, up);
-                let laid = (example, &fit);
-                sight.left(poses, points, laid, up, [cosine, sine], factor, &mut signals.differences);
+                for ([x, y, above], share) in sight.left(poses, points, (example, &fit), up) {
+                    let factor = factor * share.sqrt();
+                    let left = [cosine * x + sine * y, cosine * y - sine * x, above];
+                    signals.differences.extend(left.map(|left| factor * left));
+                }
                 if aligned {
                     let root = poses.place(example);
                     let [x, y] = sight.moved(&fit, [root[first], root[second]]);
