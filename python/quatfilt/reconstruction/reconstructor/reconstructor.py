@@ -24,7 +24,8 @@ class MotionReconstructor:
     """Reconstruct the motion of a whole body from trajectories of a few of its joints.
 
     In each frame, the examples in a database are found that are nearest to the last reconstructed poses and to the last
-    ways of the control points; a local model of how they went on predicts the pose; and the most probable pose ``q`` is found
+    ways of the control points; a local model of how they went on, and of how their control points differ from those that are seen,
+    predicts the pose; and the most probable pose ``q`` is found
     by Levenberg and Marquardt's method from::
 
         ‖f(q; s) − c‖² / 2·control_noise² + Σ_d (q_d − μ_d)² / 2σ_d²
@@ -53,8 +54,8 @@ class MotionReconstructor:
     orientation_noise : float, radians, default 0.05
         Standard deviation of orientations, where they are given.
     control_scale : float or None, skeleton units, default None
-        When examples are looked for, control points that are so far off count as much as poses a radian apart. Infinite:
-        poses alone count, as in the paper; a wrong pose then finds examples as wrong, and is kept. None: six hundredths of
+        When examples are looked for, and when they are learned from, control points that are so far off count as much as poses a radian
+        apart. Infinite: poses alone count, as in the paper; a wrong pose then finds examples as wrong, and is kept. None: six hundredths of
         the longest chain, about 7 cm.
     ridge : float, default 0.5
         As in `predict_pose`.
