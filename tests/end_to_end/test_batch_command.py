@@ -194,10 +194,10 @@ TAKES = 30
 def test_an_interrupted_batch_goes_on_where_it_was(tmp_path, workers):
     takes, out = tmp_path / "takes", tmp_path / "out"
     takes.mkdir()
-    clip = walk(seconds=20)
+    clip = walk(seconds=40)
     for number in range(TAKES):
         qf.write_motion(takes / f"{number:02}.npz", clip)
-    words = ["--workers", str(workers), "--method", "nonlocal-pose-means", "--option", "search_radius=1200"]
+    words = ["--workers", str(workers), "--method", "nonlocal-pose-means", "--option", "search_radius=2400"]
     command = [*COMMAND, "batch", str(takes), "-o", str(out), *words]
     with subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
