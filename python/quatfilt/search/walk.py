@@ -20,10 +20,11 @@ class PoseSearch:
     Without a graph the search is exact: what is found is what `nearest_segments` finds. It is faster in sequence, for what was far
     from one frame cannot be near to the next, and is looked at again only when the motion has travelled far enough.
 
-    With a graph it begins with the nearest of the frame before and the poses after them. From the nearest that it knows it goes on to the
-    neighbours of that, in the graph and in time, and so forth, until it has been at all of the `breadth` nearest. All segments are looked at in the first frame, after every `refresh` frames, where there are fewer than `k` candidates, and where the last
-    of the nearest is more than `ratio` times as far as it was at best since all were looked at. The distances are exact; what a
-    search along the graph may miss are segments.
+    With a graph it begins with the nearest of the frame before and the poses after them. From the nearest that it knows it goes on to
+    the neighbours of that, in the graph and in time, and so forth, until it has been at all of the `breadth` nearest. All segments are
+    looked at in the first frame, after every `refresh` frames, where there are fewer than `k` candidates, and where the last of the
+    nearest is more than `ratio` times as far as it was at best since all were looked at. The distances are exact; what a search along
+    the graph may miss are segments.
 
     Parameters
     ----------
@@ -61,8 +62,8 @@ class PoseSearch:
     Notes
     -----
     Cost of a frame along a graph: at most ``breadth·(degree + 4)`` segments; they overlap, and are fewer: on motions four times
-    `breadth`. Without one: a bound for eight poses, and a few hundredths of the poses. Memory: 77 bytes for each pose, and 1 ms for a thousand poses to set it up, besides
-    `features` and `graph`.
+    `breadth`. Without one: a bound for eight poses, and a few hundredths of the poses. Memory: 77 bytes for each pose, and 1 ms for
+    a thousand poses to set it up, besides `features` and `graph`.
 
     References
     ----------

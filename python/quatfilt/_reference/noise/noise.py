@@ -38,10 +38,10 @@ def noise_level(q: Reals) -> Reals:
     motion can only add. Differences that touch a missing sample are left out. An order with fewer than two differences
     does not count, and without any order the level is 0.
 
-    Heavy noise is read off pairs of samples instead. Rotations with noise of the coherence `f` (:func:`.coherence.coherence`) about the
-    same rotation have `E (4 (q·q')² − 1)/3 = f²`. Motion takes away from that by the square of the lag between the two, but for
-    higher powers; so `f²` is where a straight line over the squared lags 1, 4, 9, 16 comes to 0. Joints with fewer than two pairs at one of
-    the lags keep the level of the differences.
+    Heavy noise is read off pairs of samples instead. Rotations with noise of the coherence `f` (:func:`.coherence.coherence`)
+    about the same rotation have `E (4 (q·q')² − 1)/3 = f²`. Motion takes away from that by the square of the lag between the two,
+    but for higher powers; so `f²` is where a straight line over the squared lags 1, 4, 9, 16 comes to 0. Joints with fewer than two
+    pairs at one of the lags keep the level of the differences.
 
     The mean over many clips of white noise is 2 % too high at 30 frames, 5 % at 20, 10 % at 12; from 40 to 2000 frames
     it is within 2 %. One clip's deviation from that is 20 % at 30 frames, 7 % at 200, 2 % at 2000. A swing of 60° to

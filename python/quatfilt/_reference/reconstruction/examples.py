@@ -190,9 +190,9 @@ def nearest(
     spacing: int,
     scale: float,
 ) -> tuple[NDArray[np.intp], Floats]:
-    """Find the nearest examples' next poses among some, nearest first, and their squared distances: the poses before are like the last ones, and the control points moved alike.
+    """Find the nearest examples' next poses among some, nearest first, and their squared distances.
 
-    The squared distance of an example is the mean of the squared distances of its `m` poses from the last ones, in
+    The poses before them are like the last ones, and their control points moved alike. The squared distance of an example is the mean of the squared distances of its `m` poses from the last ones, in
     radians, and that of its control points (`fit`) over `scale` squared. With an infinite scale it is the paper's. Of the
     examples within less than `spacing` frames of each other in a clip only the nearest is taken.
     """
@@ -241,9 +241,9 @@ than examples do, and what is peculiar to one says nothing about the others."""
 def within(segments: Floats, recent: Floats, weights: Floats) -> Floats:
     """Bring the last poses back among those of the examples, `(m, joints, 4)`.
 
-    A pose that lies farther from the mean of the examples' poses of that frame than `BESIDE` times as these do, root mean square and
-    weighted by joint, is moved towards it until it does not. What a regression makes of a query beyond its examples is passed on to the next
-    query, and a wrong pose would be kept.
+    A pose that lies farther from the mean of the examples' poses of that frame than `BESIDE` times as these do, root mean square
+    and weighted by joint, is moved towards it until it does not. What a regression makes of a query beyond its examples is passed
+    on to the next query, and a wrong pose would be kept.
 
     Parameters
     ----------
