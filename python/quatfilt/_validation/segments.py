@@ -37,7 +37,7 @@ def root_steps(value: Any, examples: Array) -> Array:
     if steps.ndim != 2 or len(steps) != len(examples):
         raise ValueError(f"root_steps: expected shape ({len(examples)}, n), got {steps.shape}")
     if not np.isfinite(steps).all():
-        raise ValueError("root_steps: expected finite numbers")
+        raise ValueError(f"root_steps: expected finite numbers, got {steps[~np.isfinite(steps)][0]}")
     return np.require(steps, examples.dtype, ("C_CONTIGUOUS", "ALIGNED"))
 
 
@@ -48,6 +48,7 @@ def joint_weights(value: Any, joints: int) -> Array:
     weights = floats(value, "joint_weights").astype(np.float64)
     if weights.shape != (joints,):
         raise ValueError(f"joint_weights: expected shape ({joints},), got {weights.shape}")
-    if not (np.isfinite(weights).all() and (weights >= 0).all()):
-        raise ValueError("joint_weights: expected finite numbers of at least 0")
+    wrong = weights[~(np.isfinite(weights) & (weights >= 0))]
+    if len(wrong):
+        raise ValueError(f"joint_weights: expected finite numbers of at least 0, got {wrong[0]}")
     return weights

@@ -154,7 +154,11 @@ def predict_pose(
     way = _validation.choice(direction, "direction", ("least_squares", "partial_least_squares"))
     if kind == "local_regression" and way == "partial_least_squares":
         kind = way
-    reach = 0.0 if bandwidth == "auto" else _validation.number(bandwidth, "bandwidth", at_least=1e-6)
+    if isinstance(bandwidth, str):
+        reach = 0.0
+        _validation.known(bandwidth, "bandwidth", ("auto",), "'auto' or a number")
+    else:
+        reach = _validation.number(bandwidth, "bandwidth", at_least=1e-6)
     chart, mean, spread, axes = ops().predict_pose(
         examples,
         steps,
