@@ -7,6 +7,10 @@ import numpy as np
 from quatfilt._typing import Array
 from quatfilt._validation.arrays import floats
 
+_FARTHEST = 1e9
+"""Units: a kilometre in micrometres. What some systems write for points that are not seen is larger, and its square leaves no
+digits for a body."""
+
 
 def control_points(value: Any, name: str, points: int, *, one: bool = False) -> Array:
     """Return places ``(frames, points, 3)``, or of `one` frame ``(points, 3)``; NaN where a point is not seen.
@@ -14,7 +18,7 @@ def control_points(value: Any, name: str, points: int, *, one: bool = False) -> 
     Raises
     ------
     ValueError
-        For another shape, for no frames, and for places at infinity.
+        For another shape, for no frames, and for places farther away than any.
     """
     array = floats(value, name)
     frames = () if one else ("frames",)
@@ -23,11 +27,11 @@ def control_points(value: Any, name: str, points: int, *, one: bool = False) -> 
         raise ValueError(f"{name}: expected shape ({expected}), got {array.shape}")
     if not len(array):
         raise ValueError(f"{name}: expected at least one frame, got none")
-    infinite = np.argwhere(np.isinf(array))
-    if len(infinite):
-        at = infinite[0].tolist()
+    far = np.argwhere(np.abs(array) > _FARTHEST)
+    if len(far):
+        at = far[0].tolist()
         where = f"point {at[-2]}" if one else f"frame {at[0]}, point {at[1]}"
         raise ValueError(
-            f"{name}: expected finite numbers, or NaN where a point is not seen, got {array[tuple(at)]} at {where}"
+            f"{name}: expected numbers of at most {_FARTHEST:g} units, or NaN where a point is not seen, got {array[tuple(at)]:g} at {where}"
         )
     return array

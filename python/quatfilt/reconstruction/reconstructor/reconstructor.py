@@ -193,8 +193,8 @@ class MotionReconstructor:
         Parameters
         ----------
         positions : array_like, shape (frames, points, 3), units of `skeleton`
-            Where the control points are, in the order of `control_points`. A point of which a coordinate is NaN is not seen; infinite
-            coordinates are refused.
+            Where the control points are, in the order of `control_points`. A point of which a coordinate is NaN is not seen;
+            beyond 1e9, coordinates are refused.
         fps : float, hertz
             Frame rate of the trajectories. They are interpolated to the rate of the database, and the poses back. At most a hundred
             times as high or as low as that.

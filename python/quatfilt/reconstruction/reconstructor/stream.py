@@ -91,7 +91,7 @@ class ReconstructionStream:
         Parameters
         ----------
         positions : array_like, shape (points, 3), skeleton units
-            Where they are; NaN where one is not seen, and never infinite. A first frame without any starts anywhere in the database.
+            Where they are; NaN where one is not seen, and at most 1e9. A first frame without any starts anywhere in the database.
         orientations : array_like or None, shape (points, 4), default None
             Their global rotations, NaN or zeros where they are not known.
         confidence : float or array_like (points,) or None, 0…1, default None

@@ -89,7 +89,7 @@ def checked(
     Raises
     ------
     ValueError
-        If the shapes do not fit each other, or a position is infinite.
+        If the shapes do not fit each other, or a position is absurd.
     """
     array = _validation.control_points(positions, "positions", points, one=one)
     rows = array.reshape(-1, points, 3)
