@@ -141,6 +141,32 @@ def test_another_unit_is_told(factor):
         reconstructor().reconstruct(positions() * factor, fps=60)
 
 
+@pytest.mark.parametrize("factor", [0.01, 100.0])
+def test_another_unit_is_told_where_a_point_is_never_seen(factor):
+    points = positions() * factor
+    points[:, 1] = np.nan
+    with pytest.raises(ValueError, match=f"multiplied by {1 / factor:.4g}, they would fit"):
+        reconstructor().reconstruct(points, fps=60)
+    with pytest.raises(ValueError, match=f"multiplied by {1 / factor:.4g}, they would fit"):
+        reconstructor().reconstruct(points[:1], fps=60)
+
+
+def test_a_height_that_the_database_has_is_no_unit():
+    low = walk(seconds=2, fps=60, seed=4)
+    database = qf.MotionDatabase.from_motions([low, fallen(low)], fps=60)
+    only = qf.MotionReconstructor(database, control_points=["LeftWrist"])
+    place = low.skeleton.index("LeftWrist")
+    only.reconstruct(fallen(low).positions()[:5, [place]], fps=60)
+    with pytest.raises(ValueError, match="multiplied by 100, they would fit"):
+        only.reconstruct(low.positions()[:5, [place]] * 0.01, fps=60)
+
+
+def fallen(motion):
+    """Return a motion whose left wrist is a tenth as high as it was."""
+    height = motion.positions()[:, motion.skeleton.index("LeftWrist"), 1]
+    return motion.replace(translation=motion.translation - np.outer(0.9 * height, [0, 1, 0]))
+
+
 def test_unit_of_the_skeleton_is_told():
     q = [walk(seconds=2, fps=60, seed=seed) for seed in (1, 2)]
     scaled = [

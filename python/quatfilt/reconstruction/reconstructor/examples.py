@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quatfilt._backend import ops, streams
+from quatfilt._typing import Mask
 from quatfilt.motion.skeleton import Skeleton
 from quatfilt.reconstruction.database import MotionDatabase
 from quatfilt.reconstruction.database.weights import reaches
@@ -72,11 +73,10 @@ class Examples:
         )
         return np.ascontiguousarray(places[:, self.points], np.float32)
 
-    @cached_property
-    def extent(self) -> tuple[float, float]:
-        """How far control points usually are from their middle, and above the ground; skeleton units."""
+    def extents(self, used: Mask) -> NDArray[np.float64]:
+        """Return how far some of the control points are from their middle, and above the ground, in poses all over the database."""
         step = max(1, len(self.database) // POSES_MEASURED)
-        return extent(self.trails[::step], self.database.up)
+        return extents(self.trails[::step, used], self.database.up)
 
     @cached_property
     def tables(self) -> Any:
@@ -101,11 +101,22 @@ class Examples:
         )
 
 
-def extent(places: NDArray[Any], up: int) -> tuple[float, float]:
-    """Return the median distance of points from their middle, and the median of their heights; NaN where none is complete."""
+def extents(places: NDArray[Any], up: int) -> NDArray[np.float64]:
+    """Return how far points are from their middle, and from the ground, in each frame in which all of them are seen.
+
+    Parameters
+    ----------
+    places : ndarray, shape (frames, points, 3), skeleton units
+        NaN where a point is not seen.
+    up : int
+        The axis that points up.
+
+    Returns
+    -------
+    ndarray, shape (2, complete frames), skeleton units
+        Root mean squares of the distances from the middle, and means of the heights.
+    """
     complete = places[np.isfinite(places).all(axis=(1, 2))].astype(np.float64)
-    if not complete.size:
-        return float("nan"), float("nan")
     middle = complete.mean(axis=1, keepdims=True)
     spread = np.sqrt(np.mean(np.sum((complete - middle) ** 2, axis=2), axis=1))
-    return float(np.median(spread)), float(np.median(np.abs(complete[..., up])))
+    return np.stack([spread, np.abs(complete[..., up]).mean(axis=1)])
