@@ -11,6 +11,7 @@ import quatfilt as qf
 from commands import COMMAND, refused, run
 from quatfilt.cli import main
 from quatfilt.evaluation.synthetic import walk
+from quatfilt.reconstruction.database.writer import folder_beside
 
 
 @pytest.fixture(scope="module", name="takes")
@@ -154,6 +155,7 @@ def test_bad_input(takes, tmp_path, capsys):
         assert names(tmp_path) == ["empty"]
     nowhere = tmp_path / "no" / "db"
     assert refused("database", "build", takes, "-o", nowhere) == f"{nowhere}: No such directory"
+    assert refused("database", "build", takes, "-o", empty, "--graph") == f"{empty}: Is a directory"
     script = takes / "two.bvh"
     assert refused("database", "info", script) == f"{script}: not a motion database"
 
@@ -186,6 +188,23 @@ def test_a_killed_build_leaves_the_old_file_or_none(tmp_path):
     run("database", "build", folder / "0.npz", "-o", out)
     assert out.read_bytes() == old
     assert names(out.parent) == ["db"]
+
+
+def test_what_a_killed_build_with_a_graph_left_is_removed_by_the_next(takes, tmp_path):
+    out = tmp_path / "db"
+    with folder_beside(str(out)) as busy:
+        (busy / "db").touch()
+        process = subprocess.Popen([*COMMAND, "database", "build", str(takes), "-o", str(out), "--graph"])
+        while len(names(tmp_path)) == 1 and process.poll() is None:
+            time.sleep(0.001)
+        process.kill()
+        assert process.wait() == -signal.SIGKILL, "done before it was killed"
+        assert len(names(tmp_path)) == 2, "a folder of each"
+        assert not out.exists()
+        run("database", "build", takes, "-o", out)
+        # What somebody else is at work in stays.
+        assert names(tmp_path) == sorted([busy.name, "db"])
+    assert names(tmp_path) == ["db"]
 
 
 def test_an_interrupted_build_cleans_up(tmp_path):

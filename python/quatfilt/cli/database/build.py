@@ -2,7 +2,6 @@
 
 import contextlib
 import sys
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
@@ -14,11 +13,11 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from quatfilt import _validation
 from quatfilt.cli import _options, _output
 from quatfilt.cli.database._describe import describe, summary
-from quatfilt.errors import FileAccessError
 from quatfilt.reconstruction.database import MotionDatabase, building
 from quatfilt.reconstruction.database.body import OtherJointsError
 from quatfilt.reconstruction.database.folders import Folders
 from quatfilt.reconstruction.database.takes import How
+from quatfilt.reconstruction.database.writer import folder_beside
 
 
 def build(
@@ -126,12 +125,8 @@ def _place(output: Path, *, graph: bool) -> Iterator[Path]:
     if not graph:
         yield output
         return
-    try:
-        folder = tempfile.TemporaryDirectory(prefix=f".{output.name}.", dir=output.parent)
-    except OSError as error:
-        raise FileAccessError(output, error.strerror or str(error)) from None
-    with folder as name:
-        yield Path(name, output.name)
+    with folder_beside(str(output)) as folder:
+        yield folder / output.name
 
 
 def _progress(total: int) -> Progress:

@@ -11,8 +11,10 @@ import secrets
 import shutil
 import struct
 import sys
+import tempfile
 import zlib
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import IO, Any, Self
@@ -197,8 +199,41 @@ def _check_regular(target: Path) -> None:
         raise OSError(None, "Not a regular file")
 
 
-def _lock(file: IO[bytes]) -> None:
-    """Hold the file until it is closed; `OSError` where somebody else does."""
+@contextmanager
+def folder_beside(path: str) -> Iterator[Path]:
+    """Yield an empty folder beside a file that is to be written, for what is written on the way to it.
+
+    It is removed at the end; where the process is killed, by the next one that writes the file.
+
+    Raises
+    ------
+    FileAccessError
+        If the file or the folder cannot be written.
+    """
+    try:
+        target = Path(path).resolve()
+        check_writable(target)
+        _check_regular(target)
+        _remove_leftovers(target)
+        folder = tempfile.TemporaryDirectory(
+            prefix=f".{target.name[:40]}.", suffix=_UNFINISHED, dir=target.parent
+        )
+    except (OSError, ValueError) as error:
+        raise FileAccessError(path, reason(error)) from None
+    with folder as name:
+        if sys.platform == "win32":
+            yield Path(name)
+            return
+        handle = os.open(name, os.O_RDONLY)
+        try:
+            _lock(handle)
+            yield Path(name)
+        finally:
+            os.close(handle)
+
+
+def _lock(file: IO[bytes] | int) -> None:
+    """Hold the file or folder until it is closed; `OSError` where somebody else does."""
     if sys.platform != "win32":
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
@@ -210,11 +245,21 @@ def _remove_leftovers(target: Path) -> None:
         # Windows does not remove what is open.
         with suppress(OSError):
             if sys.platform == "win32":
-                leftover.unlink()
-            else:
-                with leftover.open("rb") as file:
-                    _lock(file)
-                    leftover.unlink()
+                _remove(leftover)
+                continue
+            handle = os.open(leftover, os.O_RDONLY)
+            try:
+                _lock(handle)
+                _remove(leftover)
+            finally:
+                os.close(handle)
 
 
-__all__ = ["ALIGNMENT", "HEADER", "MAGIC", "VERSION", "Writer"]
+def _remove(leftover: Path) -> None:
+    if leftover.is_dir():
+        shutil.rmtree(leftover)
+    else:
+        leftover.unlink()
+
+
+__all__ = ["ALIGNMENT", "HEADER", "MAGIC", "VERSION", "Writer", "folder_beside"]
