@@ -21,11 +21,16 @@ NEAREST = [
         ValueError,
         "features: expected shape (poses, dims), got (60, 0)",
     ),
-    ({"starts": [0, 20]}, ValueError, "starts: expected numbers that rise from 0 to 60, the number of poses"),
+    (
+        {"starts": [0, 20]},
+        ValueError,
+        "starts: expected numbers that rise from 0 to 60, the number of poses, got 0 to 20",
+    ),
+    ({"starts": []}, ValueError, "starts: expected shape (clips + 1,), got (0,)"),
     (
         {"starts": [0, 30, 20, 60]},
         ValueError,
-        "starts: expected numbers that rise from 0 to 60, the number of poses",
+        "starts: expected numbers that rise from 0 to 60, the number of poses, got 20 after 30",
     ),
     ({"starts": 60}, ValueError, "starts: expected shape (clips + 1,), got ()"),
     ({"starts": [0.0, 60.0]}, TypeError, "starts: expected integers, got dtype float64"),

@@ -331,12 +331,13 @@ def test_other_joints_are_refused_by_name():
     names = list(motion.skeleton.names)
     fewer = renamed(motion, ["Pelvis", *names[1:]])
     with pytest.raises(
-        ValueError, match=f"^1: expected the joints of 0, got none named {names[0]} and others, Pelvis$"
+        ValueError,
+        match=f"^motions: 1: expected the joints of 0, got none named {names[0]} and others, Pelvis$",
     ):
         qf.MotionDatabase.from_motions([motion, fewer])
     twice = renamed(motion, [*names[:-1], names[1]])
     with pytest.raises(
-        ValueError, match=f"^0: expected joints of different names, got several named {names[1]}$"
+        ValueError, match=f"^motions: 0: expected joints of different names, got several named {names[1]}$"
     ):
         qf.MotionDatabase.from_motions([twice])
     parents = motion.skeleton.parents.copy()
@@ -345,11 +346,11 @@ def test_other_joints_are_refused_by_name():
     was = names[motion.skeleton.parents[-1]]
     with pytest.raises(
         ValueError,
-        match=f"^b: expected the joints of a, got {names[-1]} with the parent {names[0]} instead of {was}$",
+        match=f"^motions: b: expected the joints of a, got {names[-1]} with the parent {names[0]} instead of {was}$",
     ):
         qf.MotionDatabase.from_motions([motion, moved], clip_names=["a", "b"])
     two = qf.Skeleton(["a", "b"], [-1, -1], np.zeros((2, 3)))
-    with pytest.raises(ValueError, match=r"^0: expected one root, got a, b$"):
+    with pytest.raises(ValueError, match=r"^motions: 0: expected one root, got a, b$"):
         qf.MotionDatabase.from_motions([qf.Motion(np.ones((60, 2, 4)) / 2, fps=60, skeleton=two)])
 
 
@@ -365,7 +366,7 @@ def test_other_joints_are_refused_by_name():
             {"joint_weights": [1, 2]},
             r"joint_weights: expected a number or one per joint, shape \(21,\), got \(2,\)",
         ),
-        ({"joint_weights": [0] * 21}, "joint_weights: expected one above 0"),
+        ({"joint_weights": [0] * 21}, "joint_weights: expected a weight above 0, got none"),
         (
             {"min_length": 5},
             "motions: expected clips that can be used, got none: 0: left out: 1 s, shorter than 5 s",

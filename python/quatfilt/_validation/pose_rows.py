@@ -20,13 +20,21 @@ def features(value: Any, name: str) -> Array:
 def starts(value: Any, name: str, poses: int) -> NDArray[np.int64]:
     """Return `value` as the first poses of clips, and the number of poses."""
     array = np.asarray(value)
-    if array.dtype.kind not in "iu":
+    if array.dtype.kind not in "iu" and array.size:
         raise TypeError(f"{name}: expected integers, got dtype {array.dtype}")
     if array.ndim != 1 or len(array) == 0:
         raise ValueError(f"{name}: expected shape (clips + 1,), got {array.shape}")
     result = np.require(array, np.int64, ("C_CONTIGUOUS", "ALIGNED"))
-    if result[0] != 0 or result[-1] != poses or (np.diff(result) < 0).any():
-        raise ValueError(f"{name}: expected numbers that rise from 0 to {poses}, the number of poses")
+    falls = np.flatnonzero(np.diff(result) < 0)
+    if result[0] != 0 or result[-1] != poses or len(falls):
+        got = (
+            f"{result[falls[0] + 1]} after {result[falls[0]]}"
+            if len(falls)
+            else f"{result[0]} to {result[-1]}"
+        )
+        raise ValueError(
+            f"{name}: expected numbers that rise from 0 to {poses}, the number of poses, got {got}"
+        )
     return result
 
 

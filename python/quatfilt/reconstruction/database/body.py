@@ -12,7 +12,11 @@ _NAMED = 4
 """Joints that a message names; more of them are counted."""
 
 
-class OtherJointsError(ValueError):
+class JointsError(ValueError):
+    """A clip has joints that no database can hold, or not together with those before it."""
+
+
+class OtherJointsError(JointsError):
     """A clip has other joints than those before it."""
 
 
@@ -47,7 +51,7 @@ class Body:
 
         Raises
         ------
-        ValueError
+        JointsError
             If two joints have one name, or if there is another number of roots than one.
         """
         check_alone(skeleton, source)
@@ -60,7 +64,7 @@ class Body:
         ------
         OtherJointsError
             If it has other joints, or the same ones in another tree.
-        ValueError
+        JointsError
             If its joints cannot be told apart by their names.
         """
         check_alone(skeleton, source)
@@ -105,10 +109,10 @@ def check_alone(skeleton: Skeleton, source: str) -> None:
     """Refuse a skeleton whose joints cannot be told apart by their names, or that is no single body."""
     twice = [name for place, name in enumerate(skeleton.names) if name in skeleton.names[:place]]
     if twice:
-        raise ValueError(f"{source}: expected joints of different names, got several named {listed(twice)}")
+        raise JointsError(f"{source}: expected joints of different names, got several named {listed(twice)}")
     roots = [name for name, parent in zip(skeleton.names, skeleton.parents, strict=True) if parent < 0]
     if len(roots) != 1:
-        raise ValueError(f"{source}: expected one root, got {listed(roots) or 'no joints'}")
+        raise JointsError(f"{source}: expected one root, got {listed(roots) or 'no joints'}")
 
 
 def listed(names: list[str]) -> str:

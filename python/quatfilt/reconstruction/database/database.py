@@ -12,6 +12,7 @@ from quatfilt._backend import ops
 from quatfilt._typing import Array
 from quatfilt.motion.motion import Motion
 from quatfilt.reconstruction.database import building, file
+from quatfilt.reconstruction.database.body import JointsError
 from quatfilt.reconstruction.database.folders import Folders
 from quatfilt.reconstruction.database.held import Held
 from quatfilt.reconstruction.database.takes import Axis, How
@@ -128,7 +129,10 @@ class MotionDatabase(Held):
         weights = _weights(joint_weights, len(given[0].skeleton))
         builder = building.Builder(how, mirror=_validation.switch(mirror, "mirror"), weights=weights)
         for motion, name in zip(given, names, strict=True):
-            builder.add(motion, name)
+            try:
+                builder.add(motion, name)
+            except JointsError as error:
+                raise ValueError(f"motions: {error}") from None
         return cls(builder.in_memory())
 
     @classmethod
@@ -330,7 +334,7 @@ def _weights(value: ArrayLike | None, joints: int) -> NDArray[np.float64] | None
         return None
     weights = _validation.per_joint(np.asarray(value), "joint_weights", joints, at_least=0)
     if not weights.any():
-        raise ValueError("joint_weights: expected one above 0")
+        raise ValueError("joint_weights: expected a weight above 0, got none")
     return weights
 
 
