@@ -378,6 +378,12 @@ def test_bad_options(options, message):
         qf.MotionDatabase.from_motions([walk(seconds=1)], **options)
 
 
+@pytest.mark.parametrize(("names", "kind"), [("a", "str"), (5, "int")])
+def test_names_of_clips_are_several(names, kind):
+    with pytest.raises(TypeError, match=f"^clip_names: expected a sequence of names, got {kind}$"):
+        qf.MotionDatabase.from_motions([walk(seconds=1)], clip_names=names)
+
+
 def test_no_motions():
     with pytest.raises(ValueError, match=r"^motions: expected at least one, got none$"):
         qf.MotionDatabase.from_motions([])

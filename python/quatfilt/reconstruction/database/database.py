@@ -109,7 +109,7 @@ class MotionDatabase(Held):
         ValueError
             If the joints differ, the frame rate is too high, nothing is left, or with ``mirror=True`` left and right are not to be found.
         TypeError
-            If one of the motions is none.
+            If one of the motions is none, or an option is of another type.
         """
         if not isinstance(motions, Iterable):
             raise TypeError(f"motions: expected a sequence of Motions, got {type(motions).__name__}")
@@ -121,6 +121,8 @@ class MotionDatabase(Held):
             raise ValueError("motions: expected at least one, got none")
         if clip_names is None:
             names = [str(number) for number in range(len(given))]
+        elif isinstance(clip_names, str) or not isinstance(clip_names, Iterable):
+            raise TypeError(f"clip_names: expected a sequence of names, got {type(clip_names).__name__}")
         else:
             names = [str(name) for name in clip_names]
         if len(names) != len(given):
