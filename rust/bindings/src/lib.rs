@@ -41,11 +41,13 @@ mod _core {
     #[pymodule_export]
     use super::filters::savgol::{savgol, savgol_derivative};
     #[pymodule_export]
+    use super::filters::smooth::body::smooth_body;
+    #[pymodule_export]
     use super::filters::smooth::patches::smooth_patches;
     #[pymodule_export]
     use super::filters::smooth::rank::smooth_rank;
     #[pymodule_export]
-    use super::filters::smooth::{smooth, smooth_body};
+    use super::filters::smooth::smooth;
     #[pymodule_export]
     use super::filters::stream::PoseStream;
     #[pymodule_export]

@@ -1,15 +1,16 @@
 //! Automatic smoothing.
 
+pub(crate) mod body;
 pub(crate) mod patches;
 pub(crate) mod rank;
+mod with_pilot;
 
 use super::development::{Arguments, filtered};
-use crate::array::{by_dtype, clip, clip_mut, elements, input, output, run_interruptible};
-use numpy::{PyArrayMethods, PyUntypedArrayMethods};
+use crate::array::{elements, input};
+use numpy::PyUntypedArrayMethods;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use quatfilt_core::filters::smooth as core;
-use quatfilt_core::filters::smooth::{Noisy, REFERENCE_SIGMA, Smoother};
+use quatfilt_core::filters::smooth::{REFERENCE_SIGMA, Smoother};
 
 /// Smooths rotations `(frames, joints, 4)` and a translation `(frames, 3)` by as much as their noise asks for.
 #[pyfunction]
@@ -34,34 +35,4 @@ pub(crate) fn smooth(
     let filter = Smoother::new(frames, noise, translation_noise);
     let reference_sigma = reference_sigma.as_any();
     filtered(py, &filter, Arguments { q, translation, confidence, reference_sigma })
-}
-
-/// Rotations `(frames, joints, 4)` smoothed along the principal axes of the whole body, and their mean with the pilot.
-#[pyfunction]
-#[pyo3(signature = (q, pilot, confidence, noise, /))]
-pub(crate) fn smooth_body(
-    py: Python<'_>,
-    q: &Bound<'_, PyAny>,
-    pilot: &Bound<'_, PyAny>,
-    confidence: Option<&Bound<'_, PyAny>>,
-    noise: &Bound<'_, PyAny>,
-) -> PyResult<Py<PyAny>> {
-    let noise = input::<f64>("noise", noise)?;
-    let noise = elements("noise", &noise)?;
-    by_dtype!(q, T => {
-        let (q, pilot) = (input::<T>("q", q)?, input::<T>("pilot", pilot)?);
-        let confidence = confidence.map(|array| input::<T>("confidence", array)).transpose()?;
-        let confidence = confidence.as_ref().map(|array| elements("confidence", array)).transpose()?;
-        let out = output::<T>(py, q.shape());
-        {
-            let noisy = Noisy { clip: clip("q", &q)?, pilot: clip("pilot", &pilot)?, confidence, noise };
-            let (frames, joints) = (noisy.clip.frames(), noisy.clip.joints());
-            let mut out = out.readwrite();
-            let out = clip_mut(&mut out, frames, joints)?;
-            run_interruptible(py, frames * joints * joints * 40, |interrupt| {
-                core::smooth_body(&noisy, out, interrupt)
-            })?;
-        }
-        Ok(out.into_any().unbind())
-    })
 }
