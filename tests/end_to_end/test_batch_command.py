@@ -1,5 +1,6 @@
 """``quatfilt batch``: many files, some of them bad, again and again."""
 
+import contextlib
 import json
 import os
 import shutil
@@ -207,7 +208,8 @@ def test_an_interrupted_batch_goes_on_where_it_was(takes, tmp_path, workers, eve
             (os.killpg if everybody else os.kill)(process.pid, signal.SIGINT)
             _, said = process.communicate(timeout=PATIENCE)
         finally:
-            process.kill()
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
     for writer in writers:
         os.close(writer)
     assert (process.returncode, said) == (130, "quatfilt: interrupted\n")
