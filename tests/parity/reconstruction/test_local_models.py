@@ -15,7 +15,6 @@ from quatfilt import _core, _reference
 from quatfilt._reference.reconstruction.local_models import principal
 from quatfilt._reference.reconstruction.local_models.examples import Examples
 
-
 SHAKEN = 1e-13
 """Relative, of the examples, of sums over them and of eigenvectors: hundreds of roundings of float64."""
 

@@ -9,8 +9,8 @@ import tolerances
 from drawn import same_samples, seeds
 from hypothesis import given
 from hypothesis import strategies as st
-from plugins.properties import examples
 from layouts import LAYOUTS
+from plugins.properties import examples
 from quatfilt import _core, _reference
 
 DTYPES = [np.float32, np.float64]
