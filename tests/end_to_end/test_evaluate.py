@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from patience import PATIENCE
 from quatfilt.cli import main
 from quatfilt.evaluation.synthetic import walk
 
@@ -66,7 +67,7 @@ def test_figures_are_drawn_by_a_process_of_its_own(verb, says, tmp_path):
             cwd=tmp_path,
             env={**os.environ, "PYTHONIOENCODING": "utf-8"},
             check=False,
-            timeout=120,
+            timeout=PATIENCE,
         )
         assert done.returncode == 0, done.stderr
         assert done.stderr == ""

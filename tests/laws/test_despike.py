@@ -6,8 +6,9 @@ import pytest
 import quatfilt as qf
 import tolerances
 from drawn import dtypes, seeds
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from plugins.properties import examples
 from quatfilt.filters import despike
 
 RADIUS = 3
@@ -19,7 +20,7 @@ REACH = 3 * RADIUS
 AXIS = np.array([2.0, -1, 2]) / 3
 
 
-slow = settings(max_examples=12)
+slow = examples(12)
 """The reference looks at each run by itself."""
 
 

@@ -10,8 +10,9 @@ import pytest
 import quatfilt as qf
 import tolerances
 from drawn import dtypes, same_samples, seeds
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from plugins.properties import examples
 from quatfilt import _core, _reference
 
 DTYPES = [np.float32, np.float64]
@@ -36,7 +37,7 @@ def agree(q, pilot, confidence=None, *, noise=0.05, rounds=1, tolerance=0):
     same_samples(result, expected, max(tolerance, tolerances.filtered(q.dtype)))
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(
     seed=seeds,
     frames=st.one_of(st.integers(0, 110), st.integers(111, 300)),
