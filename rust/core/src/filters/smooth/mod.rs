@@ -11,7 +11,9 @@
 //! - `about`: the vectors of all joints about a pilot;
 //! - `body`: all joints together along the axes of the body;
 //! - `patches`: all joints by groups of similar patches;
-//! - `rank`: all joints as few movements at a time.
+//! - `rank`: all joints as few movements at a time;
+//! - `steps`, `products`, `symmetric`: which joints move together, products of matrices, eigenvectors;
+//! - `sums`: means of what overlapping pieces say.
 
 mod about;
 mod axes;
@@ -19,9 +21,13 @@ mod body;
 mod joint;
 mod patches;
 mod penalised;
+mod products;
 mod rank;
 mod spectrum;
+mod steps;
 mod strength;
+mod sums;
+mod symmetric;
 
 use super::development::{Columns, Smooth};
 use crate::Error;
