@@ -23,10 +23,10 @@ slow = settings(max_examples=12)
 """The reference looks at each run by itself."""
 
 
-def found_in(backend, x, *, confidence=None, radius=RADIUS, threshold=4.0, smallest=SMALLEST):
+def found_in(backend, x, *, confidence=None, radius=RADIUS, threshold=4.0, smallest=SMALLEST, longest=0):
     noise = np.asarray(backend.noise_level(x), np.float64)
     limits = np.full(x.shape[1], float(smallest))
-    return backend.find_spikes(x, confidence, noise, limits, radius, threshold)
+    return backend.find_spikes(x, confidence, noise, limits, radius, threshold, longest)
 
 
 def about_axis(angles):
@@ -181,7 +181,7 @@ def test_what_is_far_away_does_not_matter(backend):
     long = np.concatenate([q, clips.noisy(rng, np.repeat(q[-1:], far, axis=0), 0.002)])
     other = long.copy()
     other[far:] = clips.random_rotations(rng, len(long) - far, 3)
-    first, second = (backend.find_spikes(x, None, noise, smallest, RADIUS, 4.0)[:30] for x in (long, other))
+    first, second = (backend.find_spikes(x, None, noise, smallest, RADIUS, 4.0, 0)[:30] for x in (long, other))
     assert first.any()
     np.testing.assert_array_equal(first, second)
 
@@ -204,7 +204,7 @@ def test_samples_without_confidence_do_not_matter(backend, seed):
     other = np.where(trust[..., None] == 0, clips.random_rotations(rng, *q.shape[:2]), q)
     noise, smallest = np.full(3, 0.002), np.full(3, SMALLEST)
     first, second = (
-        backend.find_spikes(x, trust, noise, smallest, RADIUS, 4.0) for x in (q, np.ascontiguousarray(other))
+        backend.find_spikes(x, trust, noise, smallest, RADIUS, 4.0, 0) for x in (q, np.ascontiguousarray(other))
     )
     np.testing.assert_array_equal(first, second)
     assert not first[trust == 0].any()

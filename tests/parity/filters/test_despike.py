@@ -27,12 +27,12 @@ def spoilt(rng, frames, joints, share=0.05):
     return clips.flipped(rng, clips.product(q, turns))
 
 
-def agree(x, *, confidence=None, smallest=0.1, radius=3, threshold=4.0):
+def agree(x, *, confidence=None, smallest=0.1, radius=3, threshold=4.0, longest=0):
     noise = np.asarray(_reference.noise_level(x), np.float64)
     limits = np.full(x.shape[1], float(smallest))
     before = x.tobytes()
     result, expected = (
-        backend.find_spikes(x, confidence, noise, limits, radius, threshold)
+        backend.find_spikes(x, confidence, noise, limits, radius, threshold, longest)
         for backend in (_core, _reference)
     )
     assert x.tobytes() == before, "the input was written"
