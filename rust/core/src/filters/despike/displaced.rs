@@ -40,7 +40,8 @@ impl<P: Place> Joint<P> {
         for length in self.radius..self.longest.min(self.path.len()) + 1 {
             interrupt.check()?;
             let displaced = |run: &Range<usize>| {
-                self.doubt(run).is_some_and(|doubt| self.is_displaced(run, self.least(doubt), trusted, &mut sides))
+                self.doubt(run)
+                    .is_some_and(|doubt| self.is_displaced(run, self.least(doubt), trusted, &mut sides))
             };
             let runs: Vec<Range<usize>> = jumps.runs(length).filter(displaced).collect();
             for run in &runs {
@@ -66,7 +67,9 @@ impl<P: Place> Joint<P> {
         let steps = run.len().max(CALM);
         let reach = SURROUNDINGS * steps;
         earlier.clear();
-        earlier.extend((run.start.saturating_sub(reach)..run.start).rev().filter(|&t| trusted[t]).take(steps + 1));
+        earlier.extend(
+            (run.start.saturating_sub(reach)..run.start).rev().filter(|&t| trusted[t]).take(steps + 1),
+        );
         later.clear();
         later.extend((run.end..(run.end + reach).min(path.len())).filter(|&t| trusted[t]).take(steps + 1));
         if earlier.len().min(later.len()) <= steps {

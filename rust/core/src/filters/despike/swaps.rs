@@ -1,7 +1,7 @@
 //! Swaps: two joints that change places for some frames.
 
-use super::place::{Place, Rotation, SLACK};
 use super::Despike;
+use super::place::{Place, Rotation, SLACK};
 use crate::error::check_length;
 use crate::parallel::{self, Interrupt};
 use crate::rotations::quaternion::unit;
@@ -48,7 +48,8 @@ impl Despike {
             return Ok(Vec::new());
         }
         let least: Vec<f64> = (0..joints).map(|joint| self.least(joint)).collect();
-        let poses = Poses { clip, confidence, bounds: least.iter().map(|&least| bound(least)).collect(), least };
+        let poses =
+            Poses { clip, confidence, bounds: least.iter().map(|&least| bound(least)).collect(), least };
         let tiles = (1..frames).step_by(TILE).map(|start| start..(start + TILE).min(frames)).collect();
         let crossings = parallel::map(tiles, frames * joints * 20, |_, tile: Range<usize>| {
             interrupt.check()?;
@@ -109,9 +110,8 @@ impl<T: Real> Poses<'_, T> {
     /// Whether a joint has confidence at a frame and at the one before.
     fn known(&self, frame: usize, joint: usize) -> bool {
         let joints = self.bounds.len();
-        self.confidence.is_none_or(|c| {
-            c[frame * joints + joint] > T::ZERO && c[(frame - 1) * joints + joint] > T::ZERO
-        })
+        self.confidence
+            .is_none_or(|c| c[frame * joints + joint] > T::ZERO && c[(frame - 1) * joints + joint] > T::ZERO)
     }
 }
 
