@@ -26,6 +26,7 @@ __all__ = [
     "exp",
     "fill_gaps",
     "find_spikes",
+    "find_swaps",
     "forward_kinematics",
     "forward_kinematics_moving",
     "from_euler",
@@ -121,8 +122,18 @@ def find_spikes(
     smallest: NDArray[np.float64],
     radius: int,
     threshold: float,
+    longest: int,
     /,
 ) -> Mask: ...
+def find_swaps(
+    q: Array,
+    confidence: Array | None,
+    noise: NDArray[np.float64],
+    smallest: NDArray[np.float64],
+    threshold: float,
+    longest: int,
+    /,
+) -> NDArray[np.int64]: ...
 
 # filters/development
 def develop(

@@ -76,6 +76,11 @@ def plan(method: str | Sequence[str], preset: str | None, options: Mapping[str, 
         for option, value in step.settings.items():
             if value is REQUIRED:
                 raise TypeError(f"{step.name}.{option}: expected a value, got none")
+        if preset is not None and "cutoff" in step.chosen and "fps" not in step.chosen:
+            raise ValueError(
+                f"preset {preset!r} needs the frame rate: pass fps=30 (frames per second); the cutoff of its step "
+                f"{step.name} is in hertz"
+            )
     return tuple(steps)
 
 

@@ -12,7 +12,7 @@ or with four zeros.
 from quatfilt._reference.filters.bilateral import bilateral
 from quatfilt._reference.filters.butterworth import butterworth
 from quatfilt._reference.filters.confidence import trusted
-from quatfilt._reference.filters.despike import find_spikes
+from quatfilt._reference.filters.despike import find_spikes, find_swaps
 from quatfilt._reference.filters.development import develop, undevelop
 from quatfilt._reference.filters.gaps import fill_gaps
 from quatfilt._reference.filters.gaussian import gaussian
@@ -73,6 +73,7 @@ __all__ = [
     "exp",
     "fill_gaps",
     "find_spikes",
+    "find_swaps",
     "forward_kinematics",
     "forward_kinematics_moving",
     "from_euler",

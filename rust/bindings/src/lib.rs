@@ -23,7 +23,7 @@ mod _core {
     #[pymodule_export]
     use super::filters::confidence::trusted;
     #[pymodule_export]
-    use super::filters::despike::find_spikes;
+    use super::filters::despike::{find_spikes, find_swaps};
     #[pymodule_export]
     use super::filters::development::{develop, undevelop};
     #[pymodule_export]
