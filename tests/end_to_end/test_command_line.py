@@ -14,7 +14,7 @@ from commands import COMMAND, refused, run
 from quatfilt.cli import main
 from quatfilt.evaluation.synthetic import walk
 
-EVALUATIONS = ("nlpm-table1", "bilateral-figs", "smooth-goal", "compression")
+EVALUATIONS = ("nlpm-table1", "bilateral-figs", "smooth-goal", "robust-denoising", "compression")
 
 
 @pytest.fixture(scope="module", name="folder")
