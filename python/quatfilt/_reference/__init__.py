@@ -24,6 +24,7 @@ from quatfilt._reference.filters.one_euro import one_euro
 from quatfilt._reference.filters.orientation_filter import orientation_filter
 from quatfilt._reference.filters.savgol import savgol, savgol_derivative
 from quatfilt._reference.filters.smooth.body import smooth_body
+from quatfilt._reference.filters.smooth.low_pass import low_pass
 from quatfilt._reference.filters.smooth.patches import smooth_patches
 from quatfilt._reference.filters.smooth.rank import smooth_rank
 from quatfilt._reference.filters.smooth.smooth import smooth
@@ -54,6 +55,9 @@ from quatfilt._reference.rotations.quaternion import (
     scan,
 )
 from quatfilt._reference.rotations.resample import slerp
+from quatfilt._reference.sampling.sampling import sampling
+from quatfilt._reference.sampling.spline import knots, spline
+from quatfilt._reference.sampling.tracker_noise import tracker_noise
 from quatfilt._reference.search.patch_neighbors import patch_neighbors
 from quatfilt._reference.search.poses import nearest_segments, neighbor_graph
 from quatfilt._reference.search.walk import segment_walk
@@ -85,7 +89,9 @@ __all__ = [
     "kalman_process_noise",
     "kalman_vectors",
     "kalman_vectors_ratio",
+    "knots",
     "log",
+    "low_pass",
     "mean",
     "multiply",
     "nearest_segments",
@@ -100,6 +106,7 @@ __all__ = [
     "predict_pose",
     "principal_frames",
     "principal_geodesics",
+    "sampling",
     "savgol",
     "savgol_derivative",
     "scan",
@@ -111,9 +118,11 @@ __all__ = [
     "smooth_patches",
     "smooth_rank",
     "solve_pose",
+    "spline",
     "split_heading",
     "to_euler",
     "track",
+    "tracker_noise",
     "trusted",
     "undevelop",
     "weighted_moving_mean",
