@@ -25,6 +25,7 @@ __all__ = [
     "develop",
     "exp",
     "fill_gaps",
+    "find_repeats",
     "find_spikes",
     "forward_kinematics",
     "forward_kinematics_moving",
@@ -353,6 +354,9 @@ def forward_kinematics_moving(
 
 # noise/noise
 def noise_level(q: Array, /) -> Array: ...
+
+# noise/repeats
+def find_repeats(q: Array, /) -> Mask: ...
 
 # reconstruction/features
 def pose_features(q: Array, means: NDArray[np.float64], weights: NDArray[np.float64], /) -> Array: ...

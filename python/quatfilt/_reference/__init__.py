@@ -37,6 +37,7 @@ from quatfilt._reference.geodesics.pga.pga import geodesic_product, geodesic_sco
 from quatfilt._reference.geodesics.segment import segment
 from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
 from quatfilt._reference.noise.noise import noise_level
+from quatfilt._reference.noise.repeats import find_repeats
 from quatfilt._reference.reconstruction.features import pose_features
 from quatfilt._reference.reconstruction.heading import split_heading
 from quatfilt._reference.reconstruction.local_models.predict import predict_pose
@@ -76,6 +77,7 @@ __all__ = [
     "develop",
     "exp",
     "fill_gaps",
+    "find_repeats",
     "find_spikes",
     "forward_kinematics",
     "forward_kinematics_moving",

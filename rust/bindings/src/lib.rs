@@ -82,6 +82,8 @@ mod _core {
     #[pymodule_export]
     use super::noise::noise::noise_level;
     #[pymodule_export]
+    use super::noise::repeats::find_repeats;
+    #[pymodule_export]
     use super::reconstruction::features::pose_features;
     #[pymodule_export]
     use super::reconstruction::heading::split_heading;
