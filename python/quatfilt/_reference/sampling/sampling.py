@@ -3,6 +3,7 @@
 import numpy as np
 
 from quatfilt._reference._arrays import Mask, Reals
+from quatfilt._reference.noise.repeats import find_repeats
 from quatfilt._reference.rotations.quaternion import is_missing
 from quatfilt._reference.sampling.interpolation import knot_times
 
@@ -63,11 +64,8 @@ def sampling(q: Reals, fps: float) -> tuple[int, Reals, Mask]:
 
 def repeated_frames(q: Reals) -> Mask:
     """Return the frames that repeat the one before in `REPEATS` of the joints that move at all; `(frames,)`."""
-    there = ~is_missing(q)
-    both = there[1:] & there[:-1]
-    same = both & (q[1:] == q[:-1]).all(axis=-1)
-    moving = (both & ~same).any(axis=0)
-    count = np.sum(both & moving, axis=1)
-    result = np.zeros(len(q), bool)
-    result[1:] = (count > 0) & (np.sum(same & moving, axis=1) >= REPEATS * count)
-    return result
+    there, repeats = ~is_missing(q), find_repeats(q)
+    # The first sample of a joint is no repeat; who moves has another new one.
+    moving = np.sum(there & ~repeats, axis=0) > 1
+    count = np.sum(there & moving, axis=1)
+    return np.asarray((count > 0) & (np.sum(repeats & moving, axis=1) >= REPEATS * count))

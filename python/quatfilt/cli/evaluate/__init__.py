@@ -9,6 +9,7 @@ from quatfilt.cli.evaluate.pga_figs import pga_figs
 from quatfilt.cli.evaluate.reconstruction_tables import reconstruction_tables
 from quatfilt.cli.evaluate.robust_denoising import robust_denoising
 from quatfilt.cli.evaluate.smooth_goal import smooth_goal
+from quatfilt.cli.evaluate.trackers import trackers
 
 evaluate = typer.Typer(
     name="evaluate",
@@ -22,6 +23,7 @@ evaluate.command("pga-figs")(pga_figs)
 evaluate.command("reconstruction-tables")(reconstruction_tables)
 evaluate.command("smooth-goal")(smooth_goal)
 evaluate.command("robust-denoising")(robust_denoising)
+evaluate.command("trackers")(trackers)
 evaluate.command("compression")(compression)
 
 

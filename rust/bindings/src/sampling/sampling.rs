@@ -4,7 +4,7 @@ use crate::array::{by_dtype, clip, input, run_interruptible};
 use numpy::{Element, IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use quatfilt_core::Real;
-use quatfilt_core::sampling::{self, Kind};
+use quatfilt_core::sampling::{self as core, Kind};
 
 /// Estimated nanoseconds per rotation.
 const NANOSECONDS: usize = 10;
@@ -22,7 +22,7 @@ fn typed<T: Real + Element>(py: Python<'_>, q: &Bound<'_, PyAny>, fps: f64) -> P
     let q = input::<T>("q", q)?;
     let q = clip("q", &q)?;
     let nanoseconds = q.frames() * q.joints() * NANOSECONDS;
-    let found = run_interruptible(py, nanoseconds, |interrupt| sampling::sampling(q, fps, interrupt))?;
+    let found = run_interruptible(py, nanoseconds, |interrupt| core::sampling(q, fps, interrupt))?;
     let kind = match found.kind {
         Kind::Regular => 0,
         Kind::Held => 1,

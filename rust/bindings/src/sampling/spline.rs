@@ -5,7 +5,7 @@ use numpy::{PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use quatfilt_core::Real;
-use quatfilt_core::sampling::spline::{self, Series};
+use quatfilt_core::sampling::spline::{self as core, Series};
 
 /// Estimated nanoseconds per rotation.
 const NANOSECONDS: usize = 300;
@@ -27,7 +27,7 @@ pub(crate) fn knots(
         {
             let mut out = out.readwrite();
             let out = out.as_slice_mut()?;
-            run(py, || spline::knots(q, times, out))?;
+            run(py, || core::knots(q, times, out))?;
         }
         Ok(out.into_any().unbind())
     })
@@ -54,7 +54,7 @@ pub(crate) fn spline(
             let out = out.as_slice_mut()?;
             let nanoseconds = (times.len() + new_times.len()) * q.joints * NANOSECONDS;
             run_interruptible(py, nanoseconds, |interrupt| {
-                spline::spline(q, times, new_times, cutoff, out, interrupt)
+                core::spline(q, times, new_times, cutoff, out, interrupt)
             })?;
         }
         Ok(out.into_any().unbind())

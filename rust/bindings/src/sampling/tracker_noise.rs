@@ -4,7 +4,7 @@ use crate::array::{by_dtype, clip, input, run_interruptible};
 use numpy::{Element, IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use quatfilt_core::Real;
-use quatfilt_core::sampling::tracker_noise;
+use quatfilt_core::sampling::tracker_noise as core;
 
 /// Estimated nanoseconds per rotation.
 const NANOSECONDS: usize = 150;
@@ -21,6 +21,6 @@ fn typed<T: Real + Element>(py: Python<'_>, q: &Bound<'_, PyAny>, fps: f64) -> P
     let q = clip("q", &q)?;
     let nanoseconds = q.frames() * q.joints() * NANOSECONDS;
     let found =
-        run_interruptible(py, nanoseconds, |interrupt| tracker_noise::tracker_noise(q, fps, interrupt))?;
+        run_interruptible(py, nanoseconds, |interrupt| core::tracker_noise(q, fps, interrupt))?;
     Ok(found.to_vec().into_pyarray(py).unbind())
 }

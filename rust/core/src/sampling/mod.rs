@@ -9,6 +9,7 @@ mod interpolation;
 pub mod spline;
 pub mod tracker_noise;
 
+use crate::noise::repeats::find_repeats;
 use crate::parallel::Interrupt;
 use crate::rotations::quaternion::{between, is_missing, log_short, unit};
 use crate::{ClipView, Error, Real};
@@ -53,7 +54,7 @@ pub struct Sampling {
 /// [`Error::Interrupted`].
 pub fn sampling<T: Real>(q: ClipView<'_, T>, fps: f64, interrupt: &Interrupt) -> Result<Sampling, Error> {
     let frames = q.frames();
-    let repeats = repeated_frames(q);
+    let repeats = repeated_frames(q)?;
     let mut frozen = vec![false; frames];
     let new: Vec<usize> = (0..frames).filter(|&t| !repeats[t]).collect();
     if new.len() < 2 {
@@ -89,37 +90,29 @@ fn all(frames: usize, chosen: impl Fn(usize) -> bool) -> Vec<f64> {
 }
 
 /// The frames that repeat the one before in [`REPEATS`] of the joints that move at all.
-fn repeated_frames<T: Real>(q: ClipView<'_, T>) -> Vec<bool> {
+fn repeated_frames<T: Real>(q: ClipView<'_, T>) -> Result<Vec<bool>, Error> {
     let (frames, joints) = (q.frames(), q.joints());
-    let moved = |t: usize, joint: usize| {
-        let (a, b) = (q.at(t - 1, joint), q.at(t, joint));
-        if is_missing(a) || is_missing(b) { None } else { Some(a != b) }
-    };
-    let mut moving = vec![false; joints];
-    let mut left = joints;
-    for t in 1..frames {
-        for (joint, moving) in moving.iter_mut().enumerate() {
-            if !*moving && moved(t, joint) == Some(true) {
-                *moving = true;
-                left -= 1;
-            }
-        }
-        if left == 0 {
-            break;
+    let mut repeats = vec![false; frames * joints];
+    find_repeats(q, &mut repeats)?;
+    let there = |frame: usize, joint: usize| !is_missing(q.at(frame, joint));
+    let mut fresh = vec![0_usize; joints];
+    for frame in 0..frames {
+        for (joint, fresh) in fresh.iter_mut().enumerate() {
+            *fresh += usize::from(!repeats[frame * joints + joint] && there(frame, joint));
         }
     }
-    let mut repeats = vec![false; frames];
-    for (t, repeat) in repeats.iter_mut().enumerate().skip(1) {
+    let repeated = |frame: usize| {
         let (mut count, mut same) = (0_usize, 0_usize);
-        for (joint, &moving) in moving.iter().enumerate() {
-            if let (true, Some(moved)) = (moving, moved(t, joint)) {
+        for (joint, &fresh) in fresh.iter().enumerate() {
+            // The first sample of a joint is no repeat; who moves has another new one.
+            if fresh > 1 && there(frame, joint) {
                 count += 1;
-                same += usize::from(!moved);
+                same += usize::from(repeats[frame * joints + joint]);
             }
         }
-        *repeat = count > 0 && same as f64 >= REPEATS * count as f64;
-    }
-    repeats
+        count > 0 && same as f64 >= REPEATS * count as f64
+    };
+    Ok((0..frames).map(repeated).collect())
 }
 
 /// Rotation vectors of a joint from each `every`-th frame to the next such, NaN beside missing samples.
