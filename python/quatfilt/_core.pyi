@@ -25,6 +25,7 @@ __all__ = [
     "develop",
     "exp",
     "fill_gaps",
+    "find_repeats",
     "find_spikes",
     "find_swaps",
     "forward_kinematics",
@@ -42,7 +43,9 @@ __all__ = [
     "kalman_stream",
     "kalman_vectors",
     "kalman_vectors_ratio",
+    "knots",
     "log",
+    "low_pass",
     "mean",
     "multiply",
     "nearest_segments",
@@ -62,6 +65,7 @@ __all__ = [
     "read_amc",
     "read_asf",
     "read_bvh",
+    "sampling",
     "savgol",
     "savgol_derivative",
     "scan",
@@ -75,10 +79,12 @@ __all__ = [
     "smooth_patches",
     "smooth_rank",
     "solve_pose",
+    "spline",
     "split_heading",
     "to_euler",
     "track",
     "track_stream",
+    "tracker_noise",
     "trusted",
     "undevelop",
     "weighted_moving_mean",
@@ -247,6 +253,16 @@ def smooth(
 ) -> tuple[Array, Array | None]: ...
 def smooth_body(q: Array, pilot: Array, confidence: Array | None, noise: NDArray[np.float64], /) -> Array: ...
 
+# filters/smooth/low_pass
+def low_pass(
+    q: Array,
+    translation: Array | None,
+    confidence: Array | None,
+    reference_sigma: NDArray[np.float64],
+    softness: float,
+    /,
+) -> tuple[Array, Array | None]: ...
+
 # filters/smooth/patches
 def smooth_patches(
     q: Array, pilot: Array, confidence: Array | None, noise: NDArray[np.float64], rounds: int, /
@@ -365,6 +381,9 @@ def forward_kinematics_moving(
 # noise/noise
 def noise_level(q: Array, /) -> Array: ...
 
+# noise/repeats
+def find_repeats(q: Array, /) -> Mask: ...
+
 # reconstruction/features
 def pose_features(q: Array, means: NDArray[np.float64], weights: NDArray[np.float64], /) -> Array: ...
 
@@ -476,6 +495,18 @@ def scan(q: Array, /) -> tuple[int, float, int]: ...
 
 # rotations/resample
 def slerp(q: Array, times: NDArray[np.float64], new_times: NDArray[np.float64], /) -> Array: ...
+
+# sampling/sampling
+def sampling(q: Array, fps: float, /) -> tuple[int, NDArray[np.float64], Mask]: ...
+
+# sampling/spline
+def knots(q: Array, times: NDArray[np.float64], /) -> Array: ...
+def spline(
+    q: Array, times: NDArray[np.float64], new_times: NDArray[np.float64], cutoff: float, /
+) -> Array: ...
+
+# sampling/tracker_noise
+def tracker_noise(q: Array, fps: float, /) -> NDArray[np.float64]: ...
 
 # search/patch_neighbors
 def patch_neighbors(

@@ -5,10 +5,14 @@ from typing import Any, overload
 
 from numpy.typing import ArrayLike
 
-from quatfilt import _validation, chain
+from quatfilt import _validation, chain, sampling
 from quatfilt._typing import Array
-from quatfilt.methods import METHODS
+from quatfilt.methods import AUTO, METHODS
 from quatfilt.motion.motion import Motion
+
+
+CALMED = (None, "video")
+"""Presets whose clips may jitter as estimates from video do."""
 
 
 @overload
@@ -97,14 +101,29 @@ def denoise(
         if "scalar_first" in options:
             raise TypeError("scalar_first: expected no such option with a Motion, got one")
         steps = chain.plan(method, preset, {"fps": motion.fps, **options})
-        rotations, moved = chain.run(steps, motion.rotations, motion.translation if translation else None)
+        rotations, moved = _run(
+            method, preset, steps, motion.rotations, motion.translation if translation else None
+        )
         changes = {} if moved is None else {"translation": moved}
         return motion.replace(rotations=rotations, **changes)
     steps = chain.plan(method, preset, options)
     scalar_first = options.get("scalar_first", True)
     array = _validation.quaternions(motion_or_rotations, "rotations", scalar_first=scalar_first)
-    rotations, _ = chain.run(steps, array)
+    rotations, _ = _run(method, preset, steps, array, None)
     return _validation.scalar_order(rotations, scalar_first=scalar_first)
+
+
+def _run(
+    method: str | Sequence[str],
+    preset: str | None,
+    steps: Sequence[chain.Step],
+    rotations: Array,
+    translation: Array | None,
+) -> tuple[Array, Array | None]:
+    """Run steps; those of the automatic method and of presets at the rate of the source."""
+    if method != AUTO:
+        return chain.run(steps, rotations, translation)
+    return sampling.run(steps, rotations, translation, calmed=preset in CALMED)
 
 
 __all__ = ["METHODS", "denoise"]

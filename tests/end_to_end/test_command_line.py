@@ -15,7 +15,7 @@ from patience import PATIENCE, opened
 from quatfilt.cli import main
 from quatfilt.evaluation.synthetic import walk
 
-EVALUATIONS = ("nlpm-table1", "bilateral-figs", "smooth-goal", "compression")
+EVALUATIONS = ("nlpm-table1", "bilateral-figs", "smooth-goal", "robust-denoising", "compression")
 
 
 @pytest.fixture(scope="module", name="folder")

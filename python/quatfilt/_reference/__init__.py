@@ -24,6 +24,7 @@ from quatfilt._reference.filters.one_euro import one_euro
 from quatfilt._reference.filters.orientation_filter import orientation_filter
 from quatfilt._reference.filters.savgol import savgol, savgol_derivative
 from quatfilt._reference.filters.smooth.body import smooth_body
+from quatfilt._reference.filters.smooth.low_pass import low_pass
 from quatfilt._reference.filters.smooth.patches import smooth_patches
 from quatfilt._reference.filters.smooth.rank import smooth_rank
 from quatfilt._reference.filters.smooth.smooth import smooth
@@ -36,6 +37,7 @@ from quatfilt._reference.geodesics.pga.pga import geodesic_product, geodesic_sco
 from quatfilt._reference.geodesics.segment import segment
 from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
 from quatfilt._reference.noise.noise import noise_level
+from quatfilt._reference.noise.repeats import find_repeats
 from quatfilt._reference.reconstruction.features import pose_features
 from quatfilt._reference.reconstruction.heading import split_heading
 from quatfilt._reference.reconstruction.local_models.predict import predict_pose
@@ -54,6 +56,9 @@ from quatfilt._reference.rotations.quaternion import (
     scan,
 )
 from quatfilt._reference.rotations.resample import slerp
+from quatfilt._reference.sampling.sampling import sampling
+from quatfilt._reference.sampling.spline import knots, spline
+from quatfilt._reference.sampling.tracker_noise import tracker_noise
 from quatfilt._reference.search.patch_neighbors import patch_neighbors
 from quatfilt._reference.search.poses import nearest_segments, neighbor_graph
 from quatfilt._reference.search.walk import segment_walk
@@ -72,6 +77,7 @@ __all__ = [
     "develop",
     "exp",
     "fill_gaps",
+    "find_repeats",
     "find_spikes",
     "find_swaps",
     "forward_kinematics",
@@ -86,7 +92,9 @@ __all__ = [
     "kalman_process_noise",
     "kalman_vectors",
     "kalman_vectors_ratio",
+    "knots",
     "log",
+    "low_pass",
     "mean",
     "multiply",
     "nearest_segments",
@@ -101,6 +109,7 @@ __all__ = [
     "predict_pose",
     "principal_frames",
     "principal_geodesics",
+    "sampling",
     "savgol",
     "savgol_derivative",
     "scan",
@@ -112,9 +121,11 @@ __all__ = [
     "smooth_patches",
     "smooth_rank",
     "solve_pose",
+    "spline",
     "split_heading",
     "to_euler",
     "track",
+    "tracker_noise",
     "trusted",
     "undevelop",
     "weighted_moving_mean",

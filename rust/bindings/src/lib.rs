@@ -11,6 +11,7 @@ mod motion;
 mod noise;
 mod reconstruction;
 mod rotations;
+mod sampling;
 mod search;
 mod threads;
 
@@ -42,6 +43,8 @@ mod _core {
     use super::filters::savgol::{savgol, savgol_derivative};
     #[pymodule_export]
     use super::filters::smooth::body::smooth_body;
+    #[pymodule_export]
+    use super::filters::smooth::low_pass::low_pass;
     #[pymodule_export]
     use super::filters::smooth::patches::smooth_patches;
     #[pymodule_export]
@@ -79,6 +82,8 @@ mod _core {
     #[pymodule_export]
     use super::noise::noise::noise_level;
     #[pymodule_export]
+    use super::noise::repeats::find_repeats;
+    #[pymodule_export]
     use super::reconstruction::features::pose_features;
     #[pymodule_export]
     use super::reconstruction::heading::split_heading;
@@ -98,6 +103,12 @@ mod _core {
     use super::rotations::quaternion::{conjugate, exp, geodesic_distance, log, multiply, normalize, scan};
     #[pymodule_export]
     use super::rotations::resample::slerp;
+    #[pymodule_export]
+    use super::sampling::sampling::sampling;
+    #[pymodule_export]
+    use super::sampling::spline::{knots, spline};
+    #[pymodule_export]
+    use super::sampling::tracker_noise::tracker_noise;
     #[pymodule_export]
     use super::search::patch_neighbors::patch_neighbors;
     #[pymodule_export]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from quatfilt import _validation
+from quatfilt import _validation, sampling
 from quatfilt.evaluation._plot import figure
 from quatfilt.formats.files import write_bytes
 from quatfilt.motion.motion import Motion
@@ -38,6 +38,8 @@ class Report:
         How far the feet slide on the ground; none without a skeleton that has feet.
     clips : tuple of Side
         What was compared, for the curves of the picture.
+    source : str
+        What is known about the clip's source: held, repeated, frozen or interpolated frames; empty if every frame was measured.
 
     Examples
     --------
@@ -58,6 +60,7 @@ class Report:
     joints: tuple[Joint, ...]
     feet: tuple[Foot, ...]
     clips: tuple[Side, ...] = ()
+    source: str = ""
 
     def __repr__(self) -> str:
         return f"Report({self.frames} frames of {len(self.joints)} joints, changed by {self.overall.change_mean:.2g}°)"
@@ -71,11 +74,12 @@ class Report:
         Returns
         -------
         dict
-            ``frames``, ``fps``, ``overall``, ``joints`` and ``feet``.
+            ``frames``, ``fps``, ``source``, ``overall``, ``joints`` and ``feet``.
         """
         return {
             "frames": self.frames,
             "fps": self.fps,
+            "source": self.source,
             "overall": _finite(asdict(self.overall)),
             "joints": [_finite(asdict(joint)) for joint in self.joints],
             "feet": [_finite(asdict(foot)) for foot in self.feet],
@@ -175,6 +179,7 @@ def report(
         joints=joints,
         feet=measured.feet(*clips),
         clips=clips,
+        source=sampling.recognised(clips[0].rotations, 1.0 if rate is None else rate).says(rate),
     )
 
 

@@ -27,6 +27,7 @@ def summary(report: "Report") -> str:
         f"{report.frames} frames of {len(report.joints)} joints: turned by {_number(overall.change_mean)}° on average, "
         f"95 % by less than {_number(overall.change_p95)}°, at most {_number(overall.change_max)}°; "
         f"peak angular speed kept {_number(overall.peak_kept)}"
+        f"{f'; {report.source}' if report.source else ''}"
     )
 
 

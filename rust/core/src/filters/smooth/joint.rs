@@ -12,7 +12,7 @@ use crate::simd::multiversion;
 
 /// Weight of a sample without confidence. The line between its neighbours that stands for it keeps the smoother from swinging far
 /// out in a long gap, and beyond the end of the clip.
-const LEAST_WEIGHT: f64 = 0.01;
+pub(super) const LEAST_WEIGHT: f64 = 0.01;
 
 /// Planes that a column needs beside itself: its softness, and the memory of the solver.
 const PER_COLUMN: usize = 3 + HIGHEST;
@@ -96,7 +96,7 @@ impl<'a> Solver<'a> {
 
 multiversion! {
     /// One over the weights, which are at least `least`.
-    fn inverses<T: Real>(weights: &[T], least: T, out: &mut [T]) {
+    pub(super) fn inverses<T: Real>(weights: &[T], least: T, out: &mut [T]) {
         let n = out.len();
         let weights = &weights[..n];
         for i in 0..n {

@@ -11,6 +11,7 @@
 //! - `about`: the vectors of all joints about a pilot;
 //! - `body`: all joints together along the axes of the body;
 //! - `patches`: all joints by groups of similar patches;
+//! - `low_pass`: a fixed cut-off for all joints;
 //! - `rank`: all joints as few movements at a time;
 //! - `steps`, `products`, `symmetric`: which joints move together, products of matrices, eigenvectors;
 //! - `sums`: means of what overlapping pieces say.
@@ -19,6 +20,7 @@ mod about;
 mod axes;
 mod body;
 mod joint;
+mod low_pass;
 mod patches;
 mod penalised;
 mod products;
@@ -36,6 +38,7 @@ use crate::error::check_length;
 use crate::parallel::Interrupt;
 pub use about::Noisy;
 pub use body::smooth_body;
+pub use low_pass::LowPass;
 pub use patches::smooth_patches;
 pub use rank::smooth_rank;
 use strength::Candidates;
