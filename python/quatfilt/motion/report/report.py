@@ -38,6 +38,8 @@ class Report:
         How far the feet slide on the ground; none without a skeleton that has feet.
     clips : tuple of Side
         What was compared, for the curves of the picture.
+    foot_scale : float
+        Factor by which lengths were multiplied for the slide of the feet, see `metrics.foot_scale`; 1 where the unit is known.
 
     Examples
     --------
@@ -58,6 +60,7 @@ class Report:
     joints: tuple[Joint, ...]
     feet: tuple[Foot, ...]
     clips: tuple[Side, ...] = ()
+    foot_scale: float = 1.0
 
     def __repr__(self) -> str:
         return f"Report({self.frames} frames of {len(self.joints)} joints, changed by {self.overall.change_mean:.2g}°)"
@@ -71,7 +74,7 @@ class Report:
         Returns
         -------
         dict
-            ``frames``, ``fps``, ``overall``, ``joints`` and ``feet``.
+            ``frames``, ``fps``, ``overall``, ``joints``, ``feet`` and ``foot_scale``.
         """
         return {
             "frames": self.frames,
@@ -79,6 +82,7 @@ class Report:
             "overall": _finite(asdict(self.overall)),
             "joints": [_finite(asdict(joint)) for joint in self.joints],
             "feet": [_finite(asdict(foot)) for foot in self.feet],
+            "foot_scale": self.foot_scale,
         }
 
     def write(self, path: str | os.PathLike[str]) -> None:
@@ -175,6 +179,7 @@ def report(
         joints=joints,
         feet=measured.feet(*clips),
         clips=clips,
+        foot_scale=measured.foot_scale(clips[0]),
     )
 
 
