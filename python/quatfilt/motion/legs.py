@@ -23,7 +23,10 @@ Feet: TypeAlias = Literal["auto", "topology"] | Mapping[str, Sequence[str]]
 _PARTS = re.compile(r"[A-Z]+(?=[A-Z][a-z])|[A-Z]?[a-z]+|[A-Z]+|左|右|足首")
 """Words of a name: at underscores, blanks, dots and digits, and where camelCase has a hump."""
 
-_SIDE: Final[dict[str, Side]] = {"left": "left", "l": "left", "左": "left"} | {
+_SIDE: Final[dict[str, Side]] = {
+    "left": "left",
+    "l": "left",
+    "左": "left",
     "right": "right",
     "r": "right",
     "右": "right",
