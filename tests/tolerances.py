@@ -53,6 +53,10 @@ divide by what is left of an example where it is left out, once more. 1e-9 was m
 LOCAL_MODELS_ORACLE = 1e-9
 """The same of well-conditioned examples against other ways to the same numbers."""
 
+FEET = 1e-8
+"""Displacements in centimetres, and rotations of legs, in float64: smoothing along principal axes, whose roundings `PRINCIPAL_AXES` bounds
+in radians, of paths of some hundred centimetres."""
+
 SEGMENT_DISTANCE = {np.dtype(np.float32): 1e-6, np.dtype(np.float64): 2e-15}
 """Relative, of distances of segments: the squares add up in 16 lanes, so that of four hundred numbers 32 roundings meet in one
 sum, and halve under the root."""

@@ -33,6 +33,7 @@ from quatfilt.geodesics.compressed import Compressed
 from quatfilt.geodesics.pga import PrincipalGeodesicAnalysis
 from quatfilt.geodesics.segment import segment
 from quatfilt.motion import metrics
+from quatfilt.motion.feet import lock_feet
 from quatfilt.motion.motion import Motion
 from quatfilt.motion.report import Report, report
 from quatfilt.motion.skeleton import EndSite, Skeleton
@@ -98,6 +99,7 @@ __all__ = [
     "get_num_threads",
     "kalman",
     "kalman_noises",
+    "lock_feet",
     "log",
     "mean",
     "metrics",

@@ -28,6 +28,7 @@ __all__ = [
     "find_repeats",
     "find_spikes",
     "find_swaps",
+    "foot_displacements",
     "forward_kinematics",
     "forward_kinematics_moving",
     "from_euler",
@@ -58,6 +59,7 @@ __all__ = [
     "one_euro_stream",
     "orientation_filter",
     "patch_neighbors",
+    "place_feet",
     "pose_features",
     "predict_pose",
     "principal_frames",
@@ -369,6 +371,31 @@ def principal_geodesics(
 def segment(
     q: Array, components: int, window: int, min_length: int, lag: int, threshold: float, /
 ) -> tuple[NDArray[np.intp], NDArray[np.float64], NDArray[np.float64]]: ...
+
+# motion/feet
+def foot_displacements(
+    before: Array,
+    after: Array,
+    lengths: NDArray[np.float64],
+    up: int,
+    fps: float,
+    given: Mask | None,
+    lock: bool,
+    /,
+) -> tuple[NDArray[np.float64], Mask]: ...
+def place_feet(
+    rotations: Array,
+    translation: Array,
+    local: Array,
+    parents: NDArray[np.int64],
+    pelvis: int,
+    legs: NDArray[np.int64],
+    lengths: NDArray[np.float64],
+    displacements: NDArray[np.float64],
+    root: bool,
+    lock: bool,
+    /,
+) -> tuple[Array, Array]: ...
 
 # motion/skeleton
 def forward_kinematics(

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from quatfilt import _validation, chain, sampling
 from quatfilt._typing import Array
 from quatfilt.methods import AUTO, METHODS
+from quatfilt.motion.feet import PLACEMENTS, Placement, with_feet
 from quatfilt.motion.motion import Motion
 
 
@@ -22,6 +23,7 @@ def denoise(
     method: str | Sequence[str] = "auto",
     translation: bool = True,
     preset: str | None = None,
+    feet: Placement | None = "keep",
     **options: Any,
 ) -> Motion: ...
 @overload
@@ -31,6 +33,7 @@ def denoise(
     method: str | Sequence[str] = "auto",
     translation: bool = True,
     preset: str | None = None,
+    feet: Placement | None = "keep",
     **options: Any,
 ) -> Array: ...
 def denoise(
@@ -39,6 +42,7 @@ def denoise(
     method: str | Sequence[str] = "auto",
     translation: bool = True,
     preset: str | None = None,
+    feet: Placement | None = "keep",
     **options: Any,
 ) -> Motion | Array:
     """Denoise a motion, or a clip of rotations, with one filter or several.
@@ -56,6 +60,10 @@ def denoise(
     preset : {"optical", "inertial", "video"} or None, default None
         A chain with values for a kind of recording; what else is given goes before it. Beside methods of the caller's, it
         gives values to the steps that it has.
+    feet : {"keep", "lock"} or None, default "keep"
+        What happens to the feet of a motion after the last filter. ``"keep"``: while a foot stands on the ground it follows its path in the
+        input, without the noise; a filter alone makes feet slide. ``"lock"``: it stays at one point. None: nothing. Legs are found by the
+        names of the joints; without legs, and for arrays, ``"keep"`` does nothing.
     **options
         Options of the filters. A plain keyword is for the one step that has it; `boundary`, `confidence`, `fps`, `gaps`,
         `max_gap` and `scalar_first` are for all steps. The name of a step with a dict is for that step, as in
@@ -75,6 +83,7 @@ def denoise(
     See Also
     --------
     nonlocal_pose_means, bilateral, despike, orientation_filter : Filters, their options and their cost.
+    lock_feet : The step that holds feet on the ground, with options.
     report : What a filter did.
 
     Notes
@@ -96,6 +105,7 @@ def denoise(
     True
     """
     _validation.switch(translation, "translation")
+    placement = None if feet is None else _validation.choice(feet, "feet", PLACEMENTS)
     if isinstance(motion_or_rotations, Motion):
         motion = motion_or_rotations
         if "scalar_first" in options:
@@ -105,7 +115,10 @@ def denoise(
             method, preset, steps, motion.rotations, motion.translation if translation else None
         )
         changes = {} if moved is None else {"translation": moved}
-        return motion.replace(rotations=rotations, **changes)
+        result = motion.replace(rotations=rotations, **changes)
+        return result if placement is None else with_feet(motion, result, placement, translation=translation)
+    if placement == "lock":
+        raise TypeError(f"feet: expected a Motion to lock its feet, got {type(motion_or_rotations).__name__}")
     steps = chain.plan(method, preset, options)
     scalar_first = options.get("scalar_first", True)
     array = _validation.quaternions(motion_or_rotations, "rotations", scalar_first=scalar_first)

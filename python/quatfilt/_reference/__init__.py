@@ -35,6 +35,8 @@ from quatfilt._reference.geodesics.compress.frames import principal_frames
 from quatfilt._reference.geodesics.pga.centre import geodesic_centre
 from quatfilt._reference.geodesics.pga.pga import geodesic_product, geodesic_scores, principal_geodesics
 from quatfilt._reference.geodesics.segment import segment
+from quatfilt._reference.motion.feet.displacements import foot_displacements
+from quatfilt._reference.motion.feet.place import place_feet
 from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
 from quatfilt._reference.noise.noise import noise_level
 from quatfilt._reference.noise.repeats import find_repeats
@@ -80,6 +82,7 @@ __all__ = [
     "find_repeats",
     "find_spikes",
     "find_swaps",
+    "foot_displacements",
     "forward_kinematics",
     "forward_kinematics_moving",
     "from_euler",
@@ -105,6 +108,7 @@ __all__ = [
     "one_euro",
     "orientation_filter",
     "patch_neighbors",
+    "place_feet",
     "pose_features",
     "predict_pose",
     "principal_frames",

@@ -78,6 +78,8 @@ mod _core {
     #[pymodule_export]
     use super::geodesics::segment::segment;
     #[pymodule_export]
+    use super::motion::feet::{foot_displacements, place_feet};
+    #[pymodule_export]
     use super::motion::skeleton::{forward_kinematics, forward_kinematics_moving};
     #[pymodule_export]
     use super::noise::noise::noise_level;

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from quatfilt._typing import Mask
 from quatfilt.motion import metrics
 from quatfilt.motion.defects import find_defects
+from quatfilt.motion.legs import foot_joints
 from quatfilt.motion.metrics import _samples
 from quatfilt.motion.metrics._samples import Values
-from quatfilt.motion.metrics.feet import foot_joints
 from quatfilt.motion.metrics.speed import jerks, peaks_kept, steps
 from quatfilt.motion.report.sides import Side
 from quatfilt.noise.noise import noise_level
@@ -200,7 +200,7 @@ def feet(before: Side, after: Side, reference: Side | None = None) -> tuple[Foot
     if before.motion is None or after.motion is None:
         return ()
     ground = after.motion if reference is None or reference.motion is None else reference.motion
-    names = foot_joints(before.names)
+    names = [before.names[joint] for joint in foot_joints(before.motion.skeleton)]
     if not names:
         return ()
     slides = [
@@ -214,4 +214,9 @@ def feet(before: Side, after: Side, reference: Side | None = None) -> tuple[Foot
     )
 
 
-__all__ = ["Foot", "Joint", "feet", "joints"]
+def foot_scale(before: Side) -> float:
+    """Return the factor by which lengths of the feet were multiplied; 1 without a skeleton."""
+    return 1.0 if before.motion is None else metrics.foot_scale(before.motion)
+
+
+__all__ = ["Foot", "Joint", "feet", "foot_scale", "joints"]

@@ -40,6 +40,8 @@ class Report:
         What was compared, for the curves of the picture.
     source : str
         What is known about the clip's source: held, repeated, frozen or interpolated frames; empty if every frame was measured.
+    foot_scale : float
+        Factor by which lengths were multiplied for the slide of the feet, see `metrics.foot_scale`; 1 where the unit is known.
 
     Examples
     --------
@@ -61,6 +63,7 @@ class Report:
     feet: tuple[Foot, ...]
     clips: tuple[Side, ...] = ()
     source: str = ""
+    foot_scale: float = 1.0
 
     def __repr__(self) -> str:
         return f"Report({self.frames} frames of {len(self.joints)} joints, changed by {self.overall.change_mean:.2g}°)"
@@ -74,7 +77,7 @@ class Report:
         Returns
         -------
         dict
-            ``frames``, ``fps``, ``source``, ``overall``, ``joints`` and ``feet``.
+            ``frames``, ``fps``, ``source``, ``overall``, ``joints``, ``feet`` and ``foot_scale``.
         """
         return {
             "frames": self.frames,
@@ -83,6 +86,7 @@ class Report:
             "overall": _finite(asdict(self.overall)),
             "joints": [_finite(asdict(joint)) for joint in self.joints],
             "feet": [_finite(asdict(foot)) for foot in self.feet],
+            "foot_scale": self.foot_scale,
         }
 
     def write(self, path: str | os.PathLike[str]) -> None:
@@ -180,6 +184,7 @@ def report(
         feet=measured.feet(*clips),
         clips=clips,
         source=sampling.recognised(clips[0].rotations, 1.0 if rate is None else rate).says(rate),
+        foot_scale=measured.foot_scale(clips[0]),
     )
 
 

@@ -41,7 +41,17 @@ def tables(report: "Report") -> list[Table]:
 
 def plain(report: "Report") -> str:
     """Return the report as text."""
-    return "\n\n".join([summary(report), *map(_plain_table, tables(report))])
+    return "\n\n".join([summary(report), *map(_plain_table, tables(report)), *notes(report)])
+
+
+def notes(report: "Report") -> list[str]:
+    """Return sentences about how the feet were measured."""
+    return [scaled(report.foot_scale)] if report.feet and report.foot_scale != 1 else []
+
+
+def scaled(factor: float) -> str:
+    """Return the sentence that goes with foot slide in a unit that is not known."""
+    return f"Foot slide: the unit of the skeleton is not known; lengths were multiplied by {factor:.3g}, for a leg of 90 cm."
 
 
 def changed_most(report: "Report", count: int) -> list[int]:
@@ -185,4 +195,15 @@ def _significant(value: float) -> str:
     return f"{value:.{min(max(digits, 0), 6)}f}"
 
 
-__all__ = ["SHOWN", "Table", "changed_most", "has_reference", "jerk_unit", "plain", "summary", "tables"]
+__all__ = [
+    "SHOWN",
+    "Table",
+    "changed_most",
+    "has_reference",
+    "jerk_unit",
+    "notes",
+    "plain",
+    "scaled",
+    "summary",
+    "tables",
+]

@@ -240,7 +240,7 @@ impl<T: Real> Input<'_, T> {
     }
 
     /// Filters a translation `(frames, 3)` with the parameters and the confidence of the first joint.
-    fn translate(
+    pub(super) fn translate(
         &self,
         filter: &impl Smooth,
         values: &[T],

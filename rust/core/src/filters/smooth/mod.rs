@@ -31,11 +31,11 @@ mod strength;
 mod sums;
 mod symmetric;
 
-use super::development::{Columns, Smooth};
-use crate::Error;
+use super::development::{Columns, Input, Smooth};
 use crate::clip::Planes;
 use crate::error::check_length;
 use crate::parallel::Interrupt;
+use crate::{ClipView, Error};
 pub use about::Noisy;
 pub use body::smooth_body;
 pub use low_pass::LowPass;
@@ -85,6 +85,34 @@ impl Smoother {
             }
             _ => Ok(()),
         }
+    }
+}
+
+/// The smoother of paths of one length, without rotations.
+#[derive(Debug, Clone)]
+pub(crate) struct PathSmoother(Smoother);
+
+impl PathSmoother {
+    /// For paths of so many frames.
+    pub(crate) fn new(frames: usize) -> Self {
+        Self(Smoother::new(frames, Vec::new(), 0.0))
+    }
+
+    /// Smooths a path `(frames, 3)` whose coordinates have noise of this deviation.
+    pub(crate) fn smooth(
+        &self,
+        path: &[f64],
+        noise: f64,
+        out: &mut [f64],
+        interrupt: &Interrupt,
+    ) -> Result<(), Error> {
+        let input = Input {
+            clip: ClipView::new(&[], path.len() / 3, 0)?,
+            confidence: None,
+            reference_sigma: &[REFERENCE_SIGMA],
+        };
+        let smoother = Smoother { translation_noise: noise, ..self.0.clone() };
+        input.translate(&smoother, path, out, interrupt)
     }
 }
 
