@@ -78,17 +78,17 @@ class use_backend:  # noqa: N801 - used as a function, and as a context manager
 
     def __init__(self, name: Backend) -> None:
         self.chosen = _checked(name)
-        self._context = False
+        self.entered = False
         with _lock:
             # Of two choices in a row that are no contexts, the first one will never be in force again.
-            if len(_choices) > 1 and not (_choices[-1]._context or _choices[-2]._context):
+            if len(_choices) > 1 and not (_choices[-1].entered or _choices[-2].entered):
                 del _choices[-2]
             _choices.append(self)
             _choose()
 
     def __enter__(self) -> Self:
         with _lock:
-            self._context = True
+            self.entered = True
             if self not in _choices:
                 _choices.append(self)
             _choose()
@@ -103,7 +103,7 @@ class use_backend:  # noqa: N801 - used as a function, and as a context manager
         with _lock:
             # Other contexts, of other threads, stay in force; what was chosen without one within this context does not.
             place = _choices.index(self)
-            _choices[place:] = [choice for choice in _choices[place + 1 :] if choice._context]
+            _choices[place:] = [choice for choice in _choices[place + 1 :] if choice.entered]
             _choose()
 
 

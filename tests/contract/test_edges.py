@@ -26,7 +26,9 @@ def test_masked_confidences_are_0():
     gone = np.zeros(trust.shape, bool)
     gone[20:24, 1] = True
     expected = qf.gaussian(q, sigma=2, confidence=np.where(gone, 0, trust))
-    np.testing.assert_array_equal(qf.gaussian(q, sigma=2, confidence=np.ma.MaskedArray(trust, gone)), expected)
+    np.testing.assert_array_equal(
+        qf.gaussian(q, sigma=2, confidence=np.ma.MaskedArray(trust, gone)), expected
+    )
 
 
 def test_arrays_without_dimensions_are_numbers():
@@ -43,7 +45,7 @@ def test_confidences_with_rounding_errors():
     above[30] = -1e-9
     expected = qf.gaussian(q, sigma=2, confidence=np.clip(above, 0, 1))
     np.testing.assert_array_equal(qf.gaussian(q, sigma=2, confidence=above), expected)
-    with pytest.raises(ValueError, match="confidence: expected values from 0 to 1, got 1.01"):
+    with pytest.raises(ValueError, match=r"confidence: expected values from 0 to 1, got 1\.01"):
         qf.gaussian(q, sigma=2, confidence=np.full(60, 1.01))
 
 

@@ -139,7 +139,7 @@ def test_spikes_are_larger_than_the_smallest(backend):
 # ---- bursts
 
 LONGEST = 11
-LONG = np.arange(160)
+LONG = np.arange(110)
 """Frames of clips that bursts lie in."""
 
 
@@ -148,8 +148,8 @@ def calm_clip(rng, noise=0.002):
     return clips.noisy(rng, about_axis(0.5 * np.sin(LONG / 14)), noise)
 
 
-@pytest.mark.parametrize("noise", [0, 0.002, 0.01])
-@pytest.mark.parametrize("length", [3, 5, 8, LONGEST])
+@pytest.mark.parametrize("noise", [0, 0.01])
+@pytest.mark.parametrize("length", [3, 8, LONGEST])
 def test_displaced_runs_are_bursts(backend, length, noise):
     rng = np.random.default_rng(length)
     clean = calm_clip(rng, noise)
@@ -171,24 +171,23 @@ QUICK = {
     "claps at 4 Hz, 30 fps": 1.0 * np.sin(2 * np.pi * 4 * LONG / 30 + 0.3),
     "claps at 4 Hz, 60 fps": 1.0 * np.sin(2 * np.pi * 4 * LONG / 60 + 0.3),
     "claps at 4 Hz, 120 fps": 1.5 * np.sin(2 * np.pi * 4 * LONG / 120 + 0.3),
-    "kick and back, 30 fps": 1.8 * np.exp(-(((LONG - 80) / 2.5) ** 2)),
-    "kick that is held": 0.75 * (np.tanh((LONG - 70) / 1.5) - np.tanh((LONG - 80) / 1.5)),
+    "kick and back, 30 fps": 1.8 * np.exp(-(((LONG - 60) / 2.5) ** 2)),
+    "kick that is held": 0.75 * (np.tanh((LONG - 50) / 1.5) - np.tanh((LONG - 60) / 1.5)),
     "states that take turns": 0.9 * (LONG // 7 % 2),
     "held frames": 1.5 * np.sin(LONG // 5 * 5 / 12),
     "held frames, irregular": 1.5 * np.sin(np.maximum.accumulate(LONG * (LONG % 13 % 5 == 0)) / 12),
-    "teleports between held poses": np.repeat(np.array([0, 1, 0.1, 2, 1.1, 1.9, 0.2, 1.3]), 20),
-    "step": np.where(LONG < 80, 0.0, 1.2),
+    "teleports between held poses": np.repeat(np.array([0, 1, 0.1, 2, 1.1]), 22),
+    "step": np.where(LONG < 50, 0.0, 1.2),
 }
 
 
-@pytest.mark.parametrize("noise", [0, 0.002])
 @pytest.mark.parametrize("name", QUICK)
-def test_quick_motion_and_held_frames_are_no_bursts(backend, name, noise):
+def test_quick_motion_and_held_frames_are_no_bursts(backend, name):
     q = about_axis(QUICK[name])
-    if noise and "held" not in name:
-        q = clips.noisy(np.random.default_rng(11), q, noise)
-    for longest in (LONGEST, 45):
-        assert not found_in(backend, q, longest=longest).any()
+    if "held" not in name:
+        q = clips.noisy(np.random.default_rng(11), q, 0.002)
+    # A radius of 2 leaves runs of two samples to the search for bursts too.
+    assert not found_in(backend, q, radius=2, longest=45).any()
 
 
 @slow
@@ -233,7 +232,7 @@ def test_joints_that_change_places(backend, length):
     trust[49, 0] = 0
     assert swaps_in(backend, q, confidence=trust) == [[2, 3, 50, end]]
     backwards = swaps_in(backend, np.ascontiguousarray(q[::-1]))
-    assert backwards == [[0, 1, 160 - end, 110], [2, 3, 160 - end, 110]]
+    assert backwards == [[0, 1, 110 - end, 60], [2, 3, 110 - end, 60]]
 
 
 def test_joints_that_change_places_for_good_are_left(backend):
@@ -321,7 +320,9 @@ def test_what_is_far_away_does_not_matter(backend):
     long = np.concatenate([q, clips.noisy(rng, np.repeat(q[-1:], far, axis=0), 0.002)])
     other = long.copy()
     other[far:] = clips.random_rotations(rng, len(long) - far, 3)
-    first, second = (backend.find_spikes(x, None, noise, smallest, RADIUS, 4.0, 0)[:30] for x in (long, other))
+    first, second = (
+        backend.find_spikes(x, None, noise, smallest, RADIUS, 4.0, 0)[:30] for x in (long, other)
+    )
     assert first.any()
     np.testing.assert_array_equal(first, second)
 
@@ -344,7 +345,8 @@ def test_samples_without_confidence_do_not_matter(backend, seed):
     other = np.where(trust[..., None] == 0, clips.random_rotations(rng, *q.shape[:2]), q)
     noise, smallest = np.full(3, 0.002), np.full(3, SMALLEST)
     first, second = (
-        backend.find_spikes(x, trust, noise, smallest, RADIUS, 4.0, 0) for x in (q, np.ascontiguousarray(other))
+        backend.find_spikes(x, trust, noise, smallest, RADIUS, 4.0, 0)
+        for x in (q, np.ascontiguousarray(other))
     )
     np.testing.assert_array_equal(first, second)
     assert not first[trust == 0].any()

@@ -45,9 +45,8 @@ def frequencies(value: Any, name: str, joints: int, fps: float) -> NDArray[np.fl
     for joint, one in enumerate(array):
         if not lowest <= one < nyquist:
             place = name if np.ndim(value) == 0 else f"{name}[{joint}]"
-            hint = "; pass fps=, frames per second, for frequencies in hertz" if fps == 1 else ""
             raise ValueError(
                 f"{place}: expected a number of at least {lowest:g} and below the Nyquist frequency "
-                f"fps / 2 = {nyquist:g}, got {one:g}{hint}"
+                f"fps / 2 = {nyquist:g}, got {one:g}"
             )
     return array

@@ -22,7 +22,7 @@ _LONGEST_BURST = 10_000
 """Frames: likewise, for bursts and swaps."""
 
 _ROUNDINGS = 8
-"""By so many times the spacing of numbers at 1 a quaternion may differ from one of unit length and be left as it is."""
+"""By so many times the spacing of numbers at 1 the square of a length may differ from 1 and the quaternion be left as it is."""
 
 _JITTER = 0.105
 """Radians: recordings of bodies jitter by up to that."""
@@ -158,7 +158,7 @@ def with_translation(
     The translation is judged by itself, with the confidences of the root and without a smallest distance.
     """
     clip = _spans.prepare(q, confidence=confidence, fps=fps, **missing)
-    limits = _limits(clip, radius, threshold, smallest, duration, fps)
+    limits = _limits(clip, radius=radius, threshold=threshold, smallest=smallest, duration=duration, fps=fps)
     result, _ = limits.apply(clip)
     if translation is None:
         return result, None
@@ -191,7 +191,9 @@ def spikes(
     clip = _spans.prepare(
         q, gaps="fill", max_gap=max_gap, fps=fps, confidence=confidence, scalar_first=scalar_first
     )
-    _, found = _limits(clip, radius, threshold, smallest, duration, fps).apply(clip)
+    _, found = _limits(
+        clip, radius=radius, threshold=threshold, smallest=smallest, duration=duration, fps=fps
+    ).apply(clip)
     return found.reshape(clip.shape[:-1])
 
 
@@ -209,26 +211,36 @@ class _Limits:
         """Return the finished clip without its spikes, and where they were, ``(frames, joints)``."""
         found: Mask = np.zeros(clip.rotations.shape[:2], np.bool_)
 
+        whole = _normalized(clip)
+        noise = None
+        if self.longest > 0 and not clip.unchanged:
+            noise = np.asarray(ops().noise_level(whole.observed), np.float64)
+            whole, found = self.exchanged(whole, noise)
+        if found.any() or clip.confidence is not None:
+            # Noise is measured on what is in its place, and in each span for itself.
+            noise = None
+
         def run(rotations: Array, trust: Array | None, span: _spans.Span) -> Array:
-            here = self.find(rotations, trust, self.smallest[span.joints], self.threshold[span.joints])
+            smallest, threshold = self.smallest[span.joints], self.threshold[span.joints]
+            here = self.find(rotations, trust, smallest, threshold, noise)
             found[span.frames, span.joints] |= here
             gone = here if trust is None else here | (trust == 0)
             # A joint that is trusted nowhere has nothing to be replaced by.
             gone &= ~gone.all(axis=0)
             return cast("Array", ops().fill_gaps(_without(rotations, gone), -1, "slerp")[0])
 
-        exchanged, swapped = self.exchanged(_normalized(clip))
-        found |= swapped
-        return exchanged.filter(run), found
+        return whole.filter(run), found
 
-    def exchanged(self, clip: _spans.Clip) -> tuple[_spans.Clip, Mask]:
+    def exchanged(self, clip: _spans.Clip, noise: NDArray[np.float64]) -> tuple[_spans.Clip, Mask]:
         """Return the clip with joints back in their own places where they were swapped, and where that was."""
         frames, joints, _ = clip.rotations.shape
         swapped: Mask = np.zeros((frames, joints), np.bool_)
-        if self.longest == 0 or min(frames, joints) < 2:
+        # A threshold of each joint's own is a factor to its noise.
+        swaps = ops().find_swaps(
+            clip.rotations, clip.confidence, self.threshold * noise, self.smallest, 1.0, self.longest
+        )
+        if not len(swaps):
             return clip, swapped
-        noise = self.threshold * np.asarray(ops().noise_level(clip.observed), np.float64)
-        swaps = ops().find_swaps(clip.rotations, clip.confidence, noise, self.smallest, 1.0, self.longest)
         rotations, missing = clip.rotations.copy(), clip.missing.copy()
         trust = None if clip.confidence is None else clip.confidence.copy()
         for a, b, start, end in swaps.tolist():
@@ -255,24 +267,42 @@ class _Limits:
         return result
 
     def find(
-        self, x: Array, trust: Array | None, smallest: NDArray[np.float64], threshold: NDArray[np.float64]
+        self,
+        x: Array,
+        trust: Array | None,
+        smallest: NDArray[np.float64],
+        threshold: NDArray[np.float64],
+        noise: NDArray[np.float64] | None = None,
     ) -> Mask:
         """Return where spikes are in rotations ``(frames, joints, 4)`` or positions ``(frames, points, 3)``."""
-        known = x if trust is None or x.shape[-1] == 3 else _without(x, trust == 0)
-        noise = np.asarray(ops().noise_level(known), np.float64)
+        if noise is None:
+            known = x if trust is None or x.shape[-1] == 3 else _without(x, trust == 0)
+            noise = np.asarray(ops().noise_level(known), np.float64)
+        levels = np.unique(threshold)
+        if len(levels) == 1:
+            return cast("Mask", self._found(x, trust, noise, smallest, float(levels[0])))
         found: Mask = np.zeros(x.shape[:2], np.bool_)
-        for level in np.unique(threshold):
+        for level in levels:
             own = np.flatnonzero(threshold == level)
-            part = np.ascontiguousarray(x[:, own])
             weights = None if trust is None else np.ascontiguousarray(trust[:, own])
-            found[:, own] = ops().find_spikes(
-                part, weights, noise[own], smallest[own], self.radius, float(level), self.longest
-            )
+            part = np.ascontiguousarray(x[:, own])
+            found[:, own] = self._found(part, weights, noise[own], smallest[own], float(level))
         return found
+
+    def _found(
+        self,
+        x: Array,
+        trust: Array | None,
+        noise: NDArray[np.float64],
+        smallest: NDArray[np.float64],
+        threshold: float,
+    ) -> Any:
+        return ops().find_spikes(x, trust, noise, smallest, self.radius, threshold, self.longest)
 
 
 def _limits(
     clip: _spans.Clip,
+    *,
     radius: int,
     threshold: PerJoint,
     smallest: PerJoint | Literal["auto"],
@@ -296,11 +326,14 @@ def _limits(
 
 def _normalized(clip: _spans.Clip) -> _spans.Clip:
     """Return the clip with unit quaternions; those that are of unit length up to rounding stay bit for bit."""
-    unit = ops().normalize(clip.rotations.reshape(-1, 4)).reshape(clip.rotations.shape)
-    off = ~(np.abs(unit - clip.rotations) <= _ROUNDINGS * np.finfo(unit.dtype).eps).all(axis=-1)
+    q = clip.rotations
+    squares = np.einsum("...i,...i->...", q, q)
+    off = np.abs(squares - 1) > _ROUNDINGS * np.finfo(q.dtype).eps
     if not off.any():
         return clip
-    return replace(clip, rotations=np.where(off[..., None], unit, clip.rotations))
+    rotations = q.copy()
+    rotations[off] = ops().normalize(np.ascontiguousarray(q[off]))
+    return replace(clip, rotations=rotations)
 
 
 def _without(rotations: Array, gone: Mask) -> Array:

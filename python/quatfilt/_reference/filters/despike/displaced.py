@@ -59,7 +59,9 @@ def displaced(
             slice(start, start + length)
             for start in into[np.isin(into + length, out)]
             if (trust[start : start + length] > 0).all()
-            and is_displaced(path, known, start, start + length, least(float(trust[start : start + length].max())))
+            and is_displaced(
+                path, known, start, start + length, least(float(trust[start : start + length].max()))
+            )
         ]
         for run in runs:
             found[run] = True

@@ -1,7 +1,6 @@
 """Swaps: two joints that change places for some frames, as when a tracker mistakes left for right."""
 
 import numpy as np
-
 from numpy.typing import NDArray
 
 from quatfilt._reference._arrays import Indices, Reals
@@ -58,7 +57,9 @@ def find_swaps(
     found = [
         (*pair, start, end)
         for pair, times in crossings.items()
-        for before, start, end, after in zip([0, *times], times, times[1:], [*times[2:], frames], strict=False)
+        for before, start, end, after in zip(
+            [0, *times], times, times[1:], [*times[2:], frames], strict=False
+        )
         if end - start <= longest and end - start < min(start - before, after - end)
     ]
     return np.array(sorted(found), np.int64).reshape(-1, 4)

@@ -37,7 +37,7 @@ impl<P: Place> Joint<P> {
             }
         }
         let mut sides = (Vec::new(), Vec::new());
-        for length in self.radius..self.longest.min(self.path.len()) + 1 {
+        for length in self.radius..=self.longest.min(self.path.len()) {
             interrupt.check()?;
             let displaced = |run: &Range<usize>| {
                 self.doubt(run)
