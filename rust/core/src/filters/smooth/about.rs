@@ -109,7 +109,8 @@ impl<T: Real> Noisy<'_, T> {
                 }
             }
             if let Some(confidence) = self.confidence {
-                let path = confidence[start * self.clip.joints() + joint..].iter().step_by(self.clip.joints());
+                let path =
+                    confidence[start * self.clip.joints() + joint..].iter().step_by(self.clip.joints());
                 for (trust, from) in trust.iter_mut().zip(path) {
                     *trust = from.to_f64();
                 }

@@ -6,12 +6,14 @@
 use super::LEAST_NOISE;
 use super::about::{About, Noisy};
 use super::joint;
+use super::penalised::LANES;
 use super::products::{padded, product};
 use super::steps;
 use super::strength::Candidates;
 use super::symmetric::leading;
 use crate::clip::Planes;
 use crate::error::check_length;
+use crate::filters::columns::BLOCK;
 use crate::parallel::{self, Interrupt};
 use crate::{ClipMut, Error, Real};
 use std::sync::Mutex;
@@ -214,22 +216,28 @@ fn smooth_along<T: Real>(
         }
     }
     let kept: Mutex<Vec<(Vec<f64>, Planes<f64>)>> = Mutex::default();
-    parallel::for_each(tasks, frames * moving * 150, |_, parts| {
-        let (mut column, mut memory) =
-            kept.lock().map_or(None, |mut kept| kept.pop()).unwrap_or_default();
-        column.clear();
-        for (numbers, from) in &parts {
-            column.extend(numbers.iter().map(|x| x.to_f64() + from));
+    let work = frames * moving * 100;
+    parallel::for_each(tasks.chunks_mut(LANES).collect(), work, |_, axes: &mut [Vec<(&mut [T], f64)>]| {
+        let (mut columns, mut memory) = kept.lock().map_or(None, |mut kept| kept.pop()).unwrap_or_default();
+        let padded = frames.next_multiple_of(BLOCK);
+        columns.resize(LANES * padded, 0.0);
+        for (column, parts) in columns.chunks_exact_mut(padded).zip(&*axes) {
+            for (column, (numbers, from)) in column[..frames].chunks_mut(PART).zip(parts) {
+                for (x, number) in column.iter_mut().zip(&**numbers) {
+                    *x = number.to_f64() + from;
+                }
+            }
         }
-        column.truncate(frames);
-        joint::smooth_column(&mut column, candidates, &mut memory, interrupt)?;
-        for ((numbers, from), column) in parts.into_iter().zip(column.chunks(PART)) {
-            for (to, x) in numbers.iter_mut().zip(column) {
-                *to = T::from_f64(x - from);
+        joint::smooth_some(&mut columns, (axes.len(), frames), candidates, &mut memory, interrupt)?;
+        for (column, parts) in columns.chunks_exact(padded).zip(axes) {
+            for (column, (numbers, from)) in column[..frames].chunks(PART).zip(parts) {
+                for (to, x) in numbers.iter_mut().zip(column) {
+                    *to = T::from_f64(x - *from);
+                }
             }
         }
         if let Ok(mut kept) = kept.lock() {
-            kept.push((column, memory));
+            kept.push((columns, memory));
         }
         Ok(())
     })

@@ -47,15 +47,19 @@ impl Sums {
     ) -> Result<(), Error> {
         let (first, row) = (self.first, noisy.clip.joints() * 4);
         let frames = end - first;
-        parallel::for_each(self.joints.iter_mut().collect(), frames * joints.len() * 4, |_, sums: &mut Joint| {
-            let [x, y, z, weights] = sums;
-            for plane in [x, y, z] {
-                for (sum, weight) in plane[..frames].iter_mut().zip(&*weights) {
-                    *sum *= share / weight;
+        parallel::for_each(
+            self.joints.iter_mut().collect(),
+            frames * joints.len() * 4,
+            |_, sums: &mut Joint| {
+                let [x, y, z, weights] = sums;
+                for plane in [x, y, z] {
+                    for (sum, weight) in plane[..frames].iter_mut().zip(&*weights) {
+                        *sum *= share / weight;
+                    }
                 }
-            }
-            Ok(())
-        })?;
+                Ok(())
+            },
+        )?;
         noisy.each_part(TASK, &mut out[first * row..end * row], 0, |part, out| {
             noisy.moved(joints, first + part, |joint, c| &self.joints[joint][c][part..], out);
             Ok(())

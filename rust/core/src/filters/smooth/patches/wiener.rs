@@ -9,6 +9,9 @@ use crate::simd::multiversion;
 /// Patches that are estimated together, at most: so many vectors of equations that are solved side by side.
 pub(super) const LANES: usize = (2 * NEAR / APART + 1).next_multiple_of(LANE);
 
+/// Rows that are eliminated together; a patch has an even number of numbers.
+const PAIR: usize = 2;
+
 /// Of the covariance of the pilot's patches, how much counts.
 const SHARE: f64 = 0.75;
 
@@ -125,23 +128,37 @@ multiversion! {
     /// Gaussian elimination of a symmetric positive matrix, from its upper triangle and with right sides in the columns beyond it: what
     /// is left is Cholesky's factor, its rows scaled by the pivots. The inverse pivots go to `inverses`.
     fn eliminate<T: Real>(matrix: &mut [T], width: usize, n: usize, inverses: &mut [T]) {
-        for i in 0..n {
-            let (above, row) = matrix.split_at_mut(i * width);
-            for left in (i / LANE * LANE..width).step_by(LANE) {
-                let mut sums = [T::ZERO; LANE];
-                for (pivot, inverse) in above.chunks_exact(width).zip(&inverses[..i]) {
-                    let factor = pivot[i] * *inverse;
+        for top in (0..n).step_by(PAIR) {
+            let (above, rows) = matrix.split_at_mut(top * width);
+            for left in (top / LANE * LANE..width).step_by(LANE) {
+                let mut sums = [[T::ZERO; LANE]; PAIR];
+                for (pivot, inverse) in above.chunks_exact(width).zip(&inverses[..top]) {
                     let along = &pivot[left..left + LANE];
-                    for j in 0..LANE {
-                        sums[j] += factor * along[j];
+                    for i in 0..PAIR {
+                        let factor = pivot[top + i] * *inverse;
+                        for j in 0..LANE {
+                            sums[i][j] += factor * along[j];
+                        }
                     }
                 }
-                let row = &mut row[left..left + LANE];
-                for j in 0..LANE {
-                    row[j] -= sums[j];
+                for i in 0..PAIR {
+                    let row = &mut rows[i * width + left..][..LANE];
+                    for j in 0..LANE {
+                        row[j] -= sums[i][j];
+                    }
                 }
             }
-            inverses[i] = T::ONE / row[i];
+            for i in 0..PAIR {
+                let (pivots, row) = rows.split_at_mut(i * width);
+                let row = &mut row[..width];
+                for (pivot, inverse) in pivots.chunks_exact(width).zip(&inverses[top..]) {
+                    let factor = pivot[top + i] * *inverse;
+                    for j in top..width {
+                        row[j] -= factor * pivot[j];
+                    }
+                }
+                inverses[top + i] = T::ONE / row[top + i];
+            }
         }
     }
 }
@@ -206,7 +223,8 @@ mod tests {
             model.estimate((&planes(numbers, 90, pilot), 40), (&planes(numbers, 60, rest), 10), &times);
         let mean = |i: usize| alike.iter().map(|&patch| pilot(patch, i)).sum::<f64>() / 80.0;
         let covariance = |a: usize, b: usize| {
-            let products = alike.iter().map(|&patch| (pilot(patch, a) - mean(a)) * (pilot(patch, b) - mean(b)));
+            let products =
+                alike.iter().map(|&patch| (pilot(patch, a) - mean(a)) * (pilot(patch, b) - mean(b)));
             0.75 * products.sum::<f64>() / 80.0
         };
         // (C + I)(x − (f − p)) = p + x − μ
