@@ -67,7 +67,7 @@ def test_displacements(seed, frames, up, fps, lock, known, gaps, dtype):
 )
 def test_placed_feet(seed, frames, pelvis, legs, moving, root, lock, gaps, dtype):
     rng = np.random.default_rng(seed)
-    q = rng.normal(0, 0.3, (frames, len(PARENTS), 4)) + [1, 0, 0, 0]
+    q = np.array([1.0, 0, 0, 0]) + rng.normal(0, 0.3, (frames, len(PARENTS), 4))
     q /= np.linalg.norm(q, axis=-1, keepdims=True)
     q[:, 3] = q[0, 3]  # a knee that never bends has no hinge
     local = rng.standard_normal((1, len(PARENTS), 3)) * 20
@@ -98,7 +98,7 @@ def test_legs_that_do_not_hang_together_are_refused():
         ([[2, 3, 4, 99]], 1),
         ([[2, 3, 4, 5]], 99),
     ):
-        with pytest.raises(ValueError, match="^legs: expected joints that hang on each other$"):
+        with pytest.raises(ValueError, match=r"^legs: expected joints that hang on each other$"):
             _core.place_feet(
                 q,
                 *zeros,

@@ -4,6 +4,7 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
+    from quatfilt.motion.report.measured import Placed
     from quatfilt.motion.report.report import Report
 
 SHOWN = 8
@@ -46,7 +47,20 @@ def plain(report: "Report") -> str:
 
 def notes(report: "Report") -> list[str]:
     """Return sentences about how the feet were measured."""
-    return [scaled(report.foot_scale)] if report.feet and report.foot_scale != 1 else []
+    result = [] if report.placed is None else [turned(report.placed)]
+    if report.feet and report.foot_scale != 1:
+        result.append(scaled(report.foot_scale))
+    return result
+
+
+def turned(placed: "Placed") -> str:
+    """Return the sentence that says by how much joints were turned to hold feet on the ground."""
+    if not placed.frames:
+        return "Feet: no joint was turned to hold them on the ground."
+    return (
+        f"Feet: joints were turned in {placed.frames} frames to hold them on the ground, by at most {_number(placed.turned_max)}° "
+        f"({placed.joint}, frame {placed.frame})."
+    )
 
 
 def scaled(factor: float) -> str:
@@ -206,4 +220,5 @@ __all__ = [
     "scaled",
     "summary",
     "tables",
+    "turned",
 ]

@@ -27,7 +27,10 @@ GROUND = 0.5
 """Percentile of the heights that stands for the ground: a single low frame is none."""
 
 SHORTEST, FEWEST = 0.1, 3
-"""Seconds and frames: a shorter contact is none."""
+"""Seconds and frames: a shorter contact is none. Noise makes short ones by chance: seconds count in proportion to it, up to this noise."""
+
+CHANCE = 0.3
+"""Centimetres of noise from which the seconds count in full."""
 
 LONGEST_GAP = 0.05
 """Seconds: contacts that are no farther apart are one."""
@@ -68,8 +71,9 @@ def found(y: Reals, known: Mask, noise: float, up: int, fps: float) -> Mask:
         inside = start > 0 and end < len(y)
         if inside and end - start <= LONGEST_GAP * fps and known[start:end].all():
             result[start:end] = True
+    shortest = max(FEWEST, SHORTEST * fps * min(noise / CHANCE, 1))
     for start, end in runs(result):
-        if end - start < max(FEWEST, SHORTEST * fps):
+        if end - start < shortest:
             result[start:end] = False
     return result
 

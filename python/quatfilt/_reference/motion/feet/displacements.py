@@ -44,7 +44,7 @@ def foot_displacements(
     up: int,
     fps: float,
     given: Mask | None,
-    lock: bool,
+    lock: bool,  # noqa: FBT001
 ) -> tuple[Reals, Mask]:
     """Find when feet stand on the ground, and by how much they are to be moved.
 
@@ -91,7 +91,12 @@ def foot_displacements(
 
 
 def one_joint(
-    x: Reals, f: Reals, up: int, fps: float, given: Mask | None, lock: bool
+    x: Reals,
+    f: Reals,
+    up: int,
+    fps: float,
+    given: Mask | None,
+    lock: bool,  # noqa: FBT001
 ) -> tuple[Reals, Reals, Mask]:
     """Return displacements `(frames, 3)` of a joint, their weights and the contacts `(frames,)`; all in centimetres."""
     frames = len(x)

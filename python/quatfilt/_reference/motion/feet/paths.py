@@ -1,5 +1,7 @@
 """Paths of foot joints: the best estimate from a path and its filtered version."""
 
+from typing import cast
+
 import numpy as np
 
 from quatfilt._reference._arrays import Mask, Reals
@@ -41,6 +43,5 @@ def estimated(x: Reals, f: Reals) -> tuple[Reals, float]:
     if share == 0:
         return f.copy(), noise
     rest = np.tile([1.0, 0.0, 0.0, 0.0], (len(x), 1, 1))
-    _, smoothed = smooth(rest, x, None, np.zeros(1), noise)
-    assert smoothed is not None
+    smoothed = cast("Reals", smooth(rest, x, None, np.zeros(1), noise)[1])
     return f + share * (smoothed - f), noise

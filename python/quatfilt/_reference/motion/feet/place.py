@@ -66,8 +66,8 @@ def place_feet(
     legs: NDArray[np.int64],
     lengths: Reals,
     displacements: Reals,
-    root: bool,
-    lock: bool,
+    root: bool,  # noqa: FBT001
+    lock: bool,  # noqa: FBT001
 ) -> tuple[Reals, Reals]:
     """Move feet by rotations of hips, knees and ankles, and by the pelvis.
 
@@ -202,7 +202,7 @@ def solved(
     turned: Reals,
     shifted: Reals,
     wanted: Reals,
-    root: bool,
+    root: bool,  # noqa: FBT001
 ) -> tuple[Reals, Reals]:
     """Solve for the pelvis, the hips and the knees; the legs are changed in place, orientation and position of the pelvis returned.
 

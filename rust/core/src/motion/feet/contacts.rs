@@ -28,8 +28,10 @@ const STAY_HEIGHT: f64 = 6.0;
 /// Percentile of the heights that stands for the ground, as a share: a single low frame is none.
 const GROUND: f64 = 0.005;
 
-/// Seconds and frames: a shorter contact is none.
+/// Seconds and frames: a shorter contact is none. Noise makes short ones by chance: seconds count in proportion to it, in full from
+/// `CHANCE` centimetres of noise on.
 const SHORTEST: f64 = 0.1;
+const CHANCE: f64 = 0.3;
 pub(super) const FEWEST: usize = 3;
 
 /// Seconds: contacts that are no farther apart are one.
@@ -72,8 +74,9 @@ pub(super) fn find(
             result[gap].fill(true);
         }
     }
+    let shortest = SHORTEST * fps * (noise / CHANCE).min(1.0);
     for run in runs(&result.clone()) {
-        if run.len() < FEWEST || (run.len() as f64) < SHORTEST * fps {
+        if run.len() < FEWEST || (run.len() as f64) < shortest {
             result[run].fill(false);
         }
     }
