@@ -12,7 +12,7 @@ const SIGMAS: [f64; 11] = [0.4, 0.28, 0.2, 0.14, 0.1, 0.07, 0.05, 0.035, 0.025, 
 
 /// Seconds and frames: a deviation is tried if it is not above one of these. Few frames per second need more time against noise.
 const ALWAYS: f64 = 0.1;
-const MOST_FRAMES: f64 = 17.0;
+const MOST_FRAMES: f64 = 12.5;
 
 /// Of the noise: root mean square per coordinate by which a low-pass may move the path within a contact.
 const FIT: f64 = 0.35;
