@@ -163,15 +163,16 @@ pub fn place_feet<T: Real>(
     interrupt: &Interrupt,
 ) -> Result<(), Error> {
     body.check(&out)?;
-    out.rotations.copy_from_slice(body.rotations.data());
-    out.translation.copy_from_slice(body.translation);
+    let Placed { rotations, translation } = out;
+    rotations.copy_from_slice(body.rotations.data());
+    translation.copy_from_slice(body.translation);
     let joints = body.rotations.joints();
     let hinges =
         parallel::map((0..body.legs.len()).collect(), body.rotations.frames() * 60, |_, leg: usize| {
             hinge(body.rotations, body.legs[leg][1], interrupt)
         })?;
-    let rotations = out.rotations.chunks_mut(TILE * joints * 4);
-    let tiles: Vec<(&mut [T], &mut [T])> = rotations.zip(out.translation.chunks_mut(TILE * 3)).collect();
+    let rotations = rotations.chunks_mut(TILE * joints * 4);
+    let tiles: Vec<(&mut [T], &mut [T])> = rotations.zip(translation.chunks_mut(TILE * 3)).collect();
     parallel::for_each(tiles, body.nanoseconds(), |tile, (rotations, translation)| {
         interrupt.check()?;
         let rows = rotations.chunks_exact_mut(joints * 4).zip(translation.chunks_exact_mut(3));
@@ -348,11 +349,9 @@ fn crossed(r: Point, s: Point) -> [Point; 3] {
 fn cholesky(matrix: &mut [[f64; ROWS]; ROWS], right: &mut [f64; ROWS]) {
     for i in 0..ROWS {
         for j in 0..=i {
-            let mut sum = matrix[i][j];
-            for k in 0..j {
-                sum -= matrix[i][k] * matrix[j][k];
-            }
-            matrix[i][j] = if i == j { sum.sqrt() } else { sum / matrix[j][j] };
+            let before: f64 = matrix[i][..j].iter().zip(&matrix[j][..j]).map(|(a, b)| a * b).sum();
+            let rest = matrix[i][j] - before;
+            matrix[i][j] = if i == j { rest.sqrt() } else { rest / matrix[j][j] };
         }
     }
     for i in 0..ROWS {
