@@ -10,7 +10,6 @@ from quatfilt._typing import Array
 from quatfilt.methods import AUTO, METHODS
 from quatfilt.motion.motion import Motion
 
-
 CALMED = (None, "video")
 """Presets whose clips may jitter as estimates from video do."""
 
