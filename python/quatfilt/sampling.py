@@ -201,6 +201,8 @@ def _low_passed(
     def low_pass(
         part: Array, along: Array | None, trust: Array | None, there: NDArray[np.intp]
     ) -> tuple[Array, Array | None]:
+        # A filled sample counts as the straight line that it lies on, unless confidences were given.
+        trust = trust if clip.weighed else None
         return cast(
             "tuple[Array, Array | None]", ops().low_pass(part, along, trust, reference[there], softness)
         )
@@ -219,7 +221,7 @@ def _at_measurements(
     """Clean each stretch between freezes at the rate of the source."""
     policy = steps[-1].settings["gaps"]
     # Options, and missing samples that are not to be there, are refused before anything is computed.
-    chain.run(steps, clip[:0], None)
+    chain.refuse_early(steps, clip)
     if policy == "raise":
         _spans.prepare(clip, gaps=policy, max_gap=None, fps=1.0, confidence=None, scalar_first=True)
     result = clip.copy()
