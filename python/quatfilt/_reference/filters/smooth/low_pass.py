@@ -61,7 +61,9 @@ def low_pass(
     rotations = undevelop(q, reference, still, still)
     if translation is None:
         return rotations, None
-    return rotations, smoothed(translation.astype(np.float64), weights[:, 0], softness).astype(translation.dtype)
+    return rotations, smoothed(translation.astype(np.float64), weights[:, 0], softness).astype(
+        translation.dtype
+    )
 
 
 def smoothed(vectors: Reals, weights: Reals, softness: float) -> Reals:
