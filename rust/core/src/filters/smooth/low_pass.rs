@@ -3,7 +3,7 @@
 //! The gain is `1/(1 + r⁶)`, `r = sin(π f/fps) / sin(π f_c/fps)`; parabolas stay as they are.
 
 use super::joint::{LEAST_WEIGHT, inverses};
-use super::penalised::{HIGHEST, Memory, penalised};
+use super::penalised::{HIGHEST, LANES, Row, penalised};
 use crate::Error;
 use crate::clip::Planes;
 use crate::filters::development::{Columns, Smooth};
@@ -42,18 +42,21 @@ impl Smooth for LowPass {
         if frames <= ORDER {
             return Ok(());
         }
-        spare.reshape(4 + HIGHEST, frames);
-        let [variances, softness, solution, pivots, lower @ ..] = spare.rows_mut::<{ 4 + HIGHEST }>(0);
-        variances.fill(1.0);
+        spare.reshape(1, (3 + LANES * (1 + HIGHEST)) * frames);
+        let (variances, rest) = spare.row_mut(0).split_at_mut(frames);
+        let (softness, rest) = rest.split_at_mut(frames);
+        // The vectors have three columns, and four are solved side by side.
+        let (fourth, rest) = rest.split_at_mut(frames);
+        let (rows, _) = rest.as_chunks_mut::<LANES>();
+        let (rows, _): (&mut [Row], _) = rows.as_chunks_mut::<{ 1 + HIGHEST }>();
         if let Some(trust) = columns.trust {
             inverses(trust, LEAST_WEIGHT, variances);
         }
         softness.fill(self.softness);
-        let softness = &softness[..frames - ORDER];
-        let mut memory = Memory { solution, pivots, lower };
-        for vector in columns.vectors {
-            penalised(ORDER, &mut vector[..frames], variances, softness, &mut memory, interrupt)?;
-        }
+        fourth.fill(0.0);
+        let [x, y, z] = columns.vectors.map(|vector| &mut vector[..frames]);
+        let variances = columns.trust.map(|_| &*variances);
+        penalised([ORDER; LANES], [x, y, z, fourth], variances, [&*softness; LANES], rows, interrupt)?;
         Ok(())
     }
 }
