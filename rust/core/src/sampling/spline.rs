@@ -169,7 +169,8 @@ fn column<T: Real>(
     for (result, &time) in result.iter_mut().zip(new_times) {
         let left = interval(times, time);
         let right = (left + 1).min(times.len() - 1);
-        let gone = samples[left].is_none() || (times[left] < time || times[left] > time) && samples[right].is_none();
+        let gone =
+            samples[left].is_none() || (times[left] < time || times[left] > time) && samples[right].is_none();
         if !gone {
             let (i, at) = curve.at(time);
             *result = unit(turned(reference[i], frame[i], at, development[i]));
