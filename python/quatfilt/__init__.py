@@ -37,6 +37,7 @@ from quatfilt.motion.feet import lock_feet
 from quatfilt.motion.motion import Motion
 from quatfilt.motion.report import Report, report
 from quatfilt.motion.skeleton import EndSite, Skeleton
+from quatfilt.noise.model import NoiseModel, noise_model
 from quatfilt.noise.noise import add_gaussian_noise, add_impulse_noise, noise_level
 from quatfilt.reconstruction.database import MotionDatabase
 from quatfilt.reconstruction.gplvm import PoseGPLVM
@@ -71,6 +72,7 @@ __all__ = [
     "Motion",
     "MotionDatabase",
     "MotionReconstructor",
+    "NoiseModel",
     "NonlocalPoseMeansStream",
     "OneEuroStream",
     "PoseGPLVM",
@@ -107,6 +109,7 @@ __all__ = [
     "nearest_segments",
     "neighbor_graph",
     "noise_level",
+    "noise_model",
     "nonlocal_pose_means",
     "normalize",
     "one_euro",

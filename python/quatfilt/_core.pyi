@@ -23,6 +23,7 @@ __all__ = [
     "continuous_euler",
     "decompress",
     "develop",
+    "drawn_towards",
     "exp",
     "fill_gaps",
     "find_repeats",
@@ -51,7 +52,11 @@ __all__ = [
     "multiply",
     "nearest_segments",
     "neighbor_graph",
+    "noise_along_time",
+    "noise_axes",
+    "noise_colour",
     "noise_level",
+    "noise_over_motion",
     "nonlocal_pose_means",
     "nonlocal_pose_means_stream",
     "normalize",
@@ -89,7 +94,9 @@ __all__ = [
     "tracker_noise",
     "trusted",
     "undevelop",
+    "unwhiten",
     "weighted_moving_mean",
+    "whiten",
     "write_bvh",
 ]
 
@@ -405,11 +412,38 @@ def forward_kinematics_moving(
     rotations: Array, joint_translations: Array, parents: NDArray[np.int64], /
 ) -> Array: ...
 
+# noise/model
+def noise_along_time(q: Array, level: Array, /) -> NDArray[np.float64]: ...
+def noise_axes(q: Array, /) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+def noise_colour(q: Array, /) -> float: ...
+def noise_over_motion(q: Array, level: Array, /) -> float: ...
+
 # noise/noise
 def noise_level(q: Array, /) -> Array: ...
 
 # noise/repeats
 def find_repeats(q: Array, /) -> Mask: ...
+
+# noise/whiten
+def drawn_towards(q: Array, estimate: Array, share: NDArray[np.float64], /) -> Array: ...
+def unwhiten(
+    q: Array,
+    reference: NDArray[np.float64],
+    development: NDArray[np.float64],
+    colour: float,
+    spread: NDArray[np.float64],
+    axes: NDArray[np.float64],
+    /,
+) -> NDArray[np.float64]: ...
+def whiten(
+    reference: NDArray[np.float64],
+    development: NDArray[np.float64],
+    vectors: NDArray[np.float64],
+    colour: float,
+    spread: NDArray[np.float64],
+    axes: NDArray[np.float64],
+    /,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
 
 # reconstruction/features
 def pose_features(q: Array, means: NDArray[np.float64], weights: NDArray[np.float64], /) -> Array: ...

@@ -11,7 +11,6 @@ from quatfilt.methods import AUTO, METHODS
 from quatfilt.motion.feet import PLACEMENTS, Placement, with_feet
 from quatfilt.motion.motion import Motion
 
-
 CALMED = (None, "video")
 """Presets whose clips may jitter as estimates from video do."""
 

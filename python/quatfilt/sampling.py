@@ -5,9 +5,10 @@ measurements, and their noise for motion. Here the measured frames are found fir
 the clip are taken from a spline through the result.
 """
 
+import functools
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeAlias, cast
 
@@ -34,11 +35,19 @@ SPLINE_CUTOFF = 7.0
 FEWEST = 4
 """Measurements of a stretch, at least, for it to be cleaned at the source's rate."""
 
+MOST_EXCESS = 0.8
+"""Power of the angular velocity at 7 to 9 Hz over that at 0.4 to 3 Hz above which the filters' own estimate of the noise is better
+than a low pass."""
+
 FLIP = math.radians(90)
 """Angle between two frames of the root from which the whole body flips."""
 
 _REFERENCE = 0.13
 """Deviation of the reference path's Gaussian in periods of the cut-off, as for `butterworth`."""
+
+
+Clean: TypeAlias = Callable[[Sequence[chain.Step], Array, Array | None], tuple[Array, Array | None]]
+"""Cleans rotations and a translation with the options of steps."""
 
 
 @dataclass(frozen=True)
@@ -150,23 +159,69 @@ def run(
             stacklevel=4,
         )
         source = replace(source, kind="regular")
-    if source.kind == "regular" and not source.frozen.any():
-        cleaned, moved = chain.run(steps, rotations, translation)
-    else:
-        cleaned, moved = _at_measurements(steps, clip, translation, source)
+    plain = source.kind == "regular" and not source.frozen.any()
+    clean: Clean = chain.run
     if calmed and known:
-        calm, moved = _calm(cleaned.reshape(clip.shape), moved, source.frozen, fps)
-        cleaned = calm
+        measured = clip if plain else at_measurements(clip, source)
+        doubt, cutoff, _, excess, *_ = _jitter(measured, fps / source.spacing)
+        if doubt > 0 and excess < MOST_EXCESS:
+            clean = functools.partial(_low_passed, cutoff)
+    if plain:
+        cleaned, moved = clean(steps, clip, translation)
+    else:
+        cleaned, moved = _at_measurements(clean, steps, clip, translation, source)
+    if calmed and known and clean is chain.run:
+        cleaned, moved = _calm(cleaned, moved, source.frozen, fps)
     return cleaned.reshape(rotations.shape), moved
 
 
+def _jitter(rotations: Array, fps: float) -> NDArray[np.float64]:
+    """Return what the kernel `tracker_noise` says of a clip whose gaps are filled."""
+    whole, _ = ops().fill_gaps(rotations, -1, "slerp")
+    return cast("NDArray[np.float64]", ops().tracker_noise(whole, fps))
+
+
+def _low_passed(
+    cutoff: float, steps: Sequence[chain.Step], rotations: Array, translation: Array | None
+) -> tuple[Array, Array | None]:
+    """Filter with the cut-off for jitter of video, with the options that all steps share."""
+    shared = {name: steps[-1].settings[name] for name in ("confidence", "gaps", "max_gap", "fps")}
+    lost: Mask = np.zeros(len(rotations), np.bool_)
+    path = translation
+    if translation is not None:
+        lost = np.asarray(np.isnan(translation).any(axis=1))
+        path = None if lost.all() else straightened(translation, ~lost)
+    clip = _spans.prepare(rotations, scalar_first=True, **shared)
+    fps = float(shared["fps"])
+    if clip.unchanged or cutoff >= fps / 2:
+        return clip.finish(clip.rotations.copy()), translation
+    reference = _development.reference_sigma(np.full(clip.rotations.shape[1], _REFERENCE * fps / cutoff))
+    softness = (2 * math.sin(math.pi * cutoff / fps)) ** 6
+
+    def low_pass(
+        part: Array, along: Array | None, trust: Array | None, there: NDArray[np.intp]
+    ) -> tuple[Array, Array | None]:
+        # A filled sample counts as the straight line that it lies on, unless confidences were given.
+        trust = trust if clip.weighed else None
+        return cast(
+            "tuple[Array, Array | None]", ops().low_pass(part, along, trust, reference[there], softness)
+        )
+
+    result, moved = _development.filtered(clip, path, low_pass)
+    if moved is None:
+        return result, translation
+    if shared["gaps"] == "keep":
+        moved[lost] = np.nan
+    return result, moved
+
+
 def _at_measurements(
-    steps: Sequence[chain.Step], clip: Array, translation: Array | None, source: Source
+    clean: Clean, steps: Sequence[chain.Step], clip: Array, translation: Array | None, source: Source
 ) -> tuple[Array, Array | None]:
     """Clean each stretch between freezes at the rate of the source."""
     policy = steps[-1].settings["gaps"]
     # Options, and missing samples that are not to be there, are refused before anything is computed.
-    chain.run(steps, clip[:0], None)
+    chain.refuse_early(steps, clip)
     if policy == "raise":
         _spans.prepare(clip, gaps=policy, max_gap=None, fps=1.0, confidence=None, scalar_first=True)
     result = clip.copy()
@@ -179,10 +234,7 @@ def _at_measurements(
         times = source.times[(source.times >= stretch.start) & (source.times <= stretch.stop - 1)]
         if len(times) < FEWEST:
             continue
-        if source.kind in ("held", "interpolated"):
-            rotation, along = _resampled(steps, clip, translation, source, times, stretch)
-        else:
-            rotation, along = _without_repeats(steps, clip, translation, times, stretch)
+        rotation, along = _resampled(_Cleaning(clean, steps, source), clip, translation, times, stretch)
         result[stretch] = rotation
         if moved is not None and along is not None:
             moved[stretch] = along
@@ -191,22 +243,35 @@ def _at_measurements(
     return result, moved
 
 
+@dataclass(frozen=True)
+class _Cleaning:
+    """How a clip is cleaned: by what, with which options, and at which times."""
+
+    clean: Clean
+    steps: Sequence[chain.Step]
+    source: Source
+
+
 def _resampled(
-    steps: Sequence[chain.Step],
+    cleaning: _Cleaning,
     clip: Array,
     translation: Array | None,
-    source: Source,
     times: NDArray[np.float64],
     stretch: slice,
 ) -> tuple[Array, Array | None]:
     """Clean the measurements of a stretch, and lead back to its frames."""
+    steps, source = cleaning.steps, cleaning.source
     fps = steps[0].settings["fps"]
     rate = fps if fps == UNKNOWN_RATE else fps / source.spacing
     frames = np.floor(times).astype(np.intp)
     slower = [_for_frames(step, frames, len(clip), fps=rate) for step in steps]
     measured = ops().knots(clip, times)
-    along = None if translation is None else ops().knots(np.ascontiguousarray(translation[:, None]), times)[:, 0]
-    cleaned, moved = chain.run(slower, measured, along)
+    along = (
+        None if translation is None else ops().knots(np.ascontiguousarray(translation[:, None]), times)[:, 0]
+    )
+    cleaned, moved = cleaning.clean(slower, measured, along)
+    if len(times) == stretch.stop - stretch.start:
+        return cleaned, moved
     # Cycles per frame.
     cutoff = SPLINE_CUTOFF / fps if source.kind == "interpolated" else 0.0
     every = np.arange(stretch.start, stretch.stop, dtype=np.float64)
@@ -214,38 +279,6 @@ def _resampled(
     if moved is None:
         return rotations, None
     return rotations, ops().spline(np.ascontiguousarray(moved[:, None]), times, every, cutoff)[:, 0]
-
-
-def _without_repeats(
-    steps: Sequence[chain.Step],
-    clip: Array,
-    translation: Array | None,
-    times: NDArray[np.float64],
-    stretch: slice,
-) -> tuple[Array, Array | None]:
-    """Clean a stretch whose repeated frames count as missing, but are there in the result."""
-    frames = np.arange(stretch.start, stretch.stop)
-    repeated = ~np.isin(frames, times.astype(np.intp))
-    own = [_for_frames(step, frames, len(clip)) for step in steps]
-    policy = steps[-1].settings["gaps"]
-    given = clip[stretch].copy()
-    missing = ~np.isfinite(given).all(axis=-1) | (given == 0).all(axis=-1)
-    if policy == "keep" or not missing.any():
-        own = [replace(step, chosen={**step.chosen, "gaps": "fill"}) for step in own]
-    rotations = given.copy()
-    rotations[repeated] = np.nan
-    along = None if translation is None else translation[stretch].copy()
-    if along is not None:
-        along[repeated] = np.nan
-    cleaned, moved = chain.run(own, rotations, along)
-    lost = ~missing & np.isnan(cleaned).any(axis=-1)
-    cleaned[lost] = given[lost]
-    if policy == "keep":
-        cleaned[missing] = np.nan
-    if moved is not None and translation is not None:
-        lost_path = np.isnan(moved).any(axis=-1)
-        moved[lost_path] = translation[stretch][lost_path]
-    return cleaned, moved
 
 
 def _for_frames(step: chain.Step, frames: NDArray[np.intp], count: int, **changes: Any) -> chain.Step:
@@ -262,28 +295,17 @@ def _calm(
     rotations: Array, translation: Array | None, frozen: Mask, fps: float
 ) -> tuple[Array, Array | None]:
     """Filter jitter that only estimates from video have, outside of freezes."""
-    doubt, cutoff, *_ = ops().tracker_noise(np.ascontiguousarray(rotations), fps)
-    if doubt <= 0 or cutoff >= fps / 2:
+    doubt, cutoff, *_ = _jitter(rotations, fps)
+    if doubt <= 0:
         return rotations, translation
     live = rotations.copy()
     live[frozen] = np.nan
-    clip = _spans.prepare(live, gaps="keep", max_gap=0.0, fps=fps, confidence=None, scalar_first=True)
-    reference = _development.reference_sigma(np.full(clip.rotations.shape[1], _REFERENCE * fps / cutoff))
-    softness = (2 * math.sin(math.pi * cutoff / fps)) ** 6
-
-    def low_pass(
-        part: Array, along: Array | None, trust: Array | None, there: NDArray[np.intp]
-    ) -> tuple[Array, Array | None]:
-        return cast(
-            "tuple[Array, Array | None]", ops().low_pass(part, along, trust, reference[there], softness)
-        )
-
-    known = translation is not None and np.isfinite(translation).all()
-    calm, moved = _development.filtered(clip, translation if known else None, low_pass)
+    shared = {"confidence": None, "gaps": "keep", "max_gap": 0.0, "fps": fps}
+    calm, moved = _low_passed(cutoff, [chain.Step("smooth", shared)], live, translation)
     calm[frozen] = rotations[frozen]
     if moved is not None and translation is not None:
         moved[frozen] = translation[frozen]
-    return calm, moved if known else translation
+    return calm, moved
 
 
 __all__ = ["Kind", "Source", "at_measurements", "flips", "recognised", "run"]

@@ -183,6 +183,7 @@ CALLS = {
     )[1],
     "neighbor_graph": lambda _a, _b, v: qf.neighbor_graph(rows(v), borders(), degree=3)[1],
     "noise_level": lambda a, _b, _v: qf.noise_level(with_gaps(a)),
+    "noise_model": lambda a, _b, _v: qf.noise_model(with_gaps(a)).level,
     "nonlocal_pose_means": lambda a, _b, _v: qf.nonlocal_pose_means(with_gaps(a), bandwidth=1.0),
     "normalize": lambda a, _b, _v: qf.normalize(six_times(2 * a)),
     "one_euro": lambda a, _b, _v: qf.one_euro(with_gaps(a), min_cutoff=0.1, beta=0.1),

@@ -102,7 +102,9 @@ def test_without_pywavelets_a_verb_says_what_to_install(verb, tmp_path, capsys, 
     assert not any(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("verb", ["nlpm-table1", "bilateral-figs", "pga-figs", "smooth-goal", "robust-denoising"])
+@pytest.mark.parametrize(
+    "verb", ["nlpm-table1", "bilateral-figs", "pga-figs", "smooth-goal", "robust-denoising"]
+)
 @pytest.mark.parametrize(
     ("words", "message"),
     [
@@ -135,7 +137,9 @@ def test_the_goal_is_measured_for_methods_that_there_are(tmp_path, capsys, monke
         (["--clips", "02_06,99_99"], "--clips: expected one of '02_06'"),
     ],
 )
-def test_the_noise_of_trackers_has_kinds_and_clips_that_there_are(words, message, tmp_path, capsys, monkeypatch):
+def test_the_noise_of_trackers_has_kinds_and_clips_that_there_are(
+    words, message, tmp_path, capsys, monkeypatch
+):
     monkeypatch.chdir(tmp_path)
     assert main(["evaluate", "robust-denoising", *words]) == 2
     assert message in capsys.readouterr().err
@@ -149,7 +153,10 @@ def test_kinds_of_noise_can_be_chosen(tmp_path, capsys, monkeypatch):
     assert main([*words, "-o", "results"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "PSNR less that of the better of kalman and a 6 Hz Butterworth filter, dB"
-    assert [line.split()[0] for line in lines if line.strip().startswith(("held", "steps"))] == ["held", "steps"]
+    assert [line.split()[0] for line in lines if line.strip().startswith(("held", "steps"))] == [
+        "held",
+        "steps",
+    ]
     numbers = json.loads((tmp_path / "results" / "robust-denoising.json").read_text("utf-8"))
     assert list(numbers["kinds"]) == ["held", "steps"]
     assert numbers["command"] == "quatfilt evaluate robust-denoising --seeds 1 --kinds steps,held"

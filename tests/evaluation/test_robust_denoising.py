@@ -63,7 +63,9 @@ def test_stationary_noise_has_its_level_everywhere(kind):
     assert np.std(vectors[:20]) == pytest.approx(LEVEL, rel=0.35)
 
 
-@pytest.mark.parametrize(("kind", "correlation"), [("white", 0.0), ("ar5", 0.5), ("ar8", 0.8), ("low-passed", 0.94)])
+@pytest.mark.parametrize(
+    ("kind", "correlation"), [("white", 0.0), ("ar5", 0.5), ("ar8", 0.8), ("low-passed", 0.94)]
+)
 def test_noise_is_correlated_from_frame_to_frame(kind, correlation):
     vectors = noise(kind)
     found = np.mean(vectors[1:] * vectors[:-1]) / np.mean(vectors**2)
@@ -111,7 +113,9 @@ def test_joints_are_paired_by_their_names(walk):
     assert len(Body.of(walk[0].motion.rotations, walk[0].motion.skeleton.names).pairs) == 8
 
 
-@pytest.mark.parametrize(("kind", "joints", "degrees"), [("runs", range(6), (15, 60)), ("flips", [0], (100, 170))])
+@pytest.mark.parametrize(
+    ("kind", "joints", "degrees"), [("runs", range(6), (15, 60)), ("flips", [0], (100, 170))]
+)
 def test_runs_are_turned_far(kind, joints, degrees):
     angles = np.degrees(np.linalg.norm(noise(kind, level=1e-6), axis=-1))
     hit = angles > 1
@@ -142,7 +146,12 @@ def test_between_the_ticks_of_a_clock_motion_is_straight():
 
 
 def test_mixtures_have_both_parts():
-    assert {name for name in KINDS if "+" in name} == {"ar5+bursts", "axis+unsteady", "ar8+swaps", "student+held"}
+    assert {name for name in KINDS if "+" in name} == {
+        "ar5+bursts",
+        "axis+unsteady",
+        "ar8+swaps",
+        "student+held",
+    }
     held = noise("student+held", 400).reshape(100, 4, -1)
     assert np.all(held == held[:, :1])
 
@@ -170,7 +179,9 @@ def test_outcomes_are_those_of_the_methods(walk, results):
     cleaned = qf.denoise(clip.motion)
     first = unchanged[0]
     assert (first.fps, first.method) == (120, AUTOMATIC)
-    assert first.change == pytest.approx(qf.metrics.angle_error(truth, cleaned.rotations[:, clip.steady]), abs=1e-9)
+    assert first.change == pytest.approx(
+        qf.metrics.angle_error(truth, cleaned.rotations[:, clip.steady]), abs=1e-9
+    )
     assert first.slide == pytest.approx(qf.metrics.foot_slide(cleaned, reference=clip.motion))
     assert len(unchanged) == 2 * len(METHODS)
 
@@ -208,7 +219,10 @@ def test_the_page_and_the_numbers_agree(walk, results, tmp_path):
     page = written[0].read_text(encoding="utf-8")
     first = numbers["outcomes"][0]
     lost = sum(one["margin"] < -0.5 for one in numbers["outcomes"])
-    assert f"Of 4 combinations of recording, frame rate, kind and level, {lost} are more than 0.5 dB below" in page
+    assert (
+        f"Of 4 combinations of recording, frame rate, kind and level, {lost} are more than 0.5 dB below"
+        in page
+    )
     assert f"| white | {LEVEL} | {first['noisy']:.1f} | {first['psnr'][AUTOMATIC]:.1f} |" in page
     assert f"| 120 | {AUTOMATIC} | {numbers['clean'][0]['change']:.3f} |" in page
     assert written[2].read_bytes().startswith(b"\x89PNG")

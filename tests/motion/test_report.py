@@ -249,6 +249,10 @@ def test_what_held_the_feet_is_told(motions):
     assert "no joint was turned" in str(qf.report(noisy, filtered, filtered=filtered))
     assert qf.report(noisy, kept).placed is None
     with pytest.raises(ValueError, match="filtered: expected the shape of"):
-        qf.report(noisy, kept, filtered=truth.replace(rotations=truth.rotations[:5], translation=truth.translation[:5]))
+        qf.report(
+            noisy,
+            kept,
+            filtered=truth.replace(rotations=truth.rotations[:5], translation=truth.translation[:5]),
+        )
     with pytest.raises(TypeError, match="filtered: expected None with rotations"):
         qf.report(noisy.rotations, kept.rotations, filtered=filtered)

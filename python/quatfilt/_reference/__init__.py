@@ -38,8 +38,14 @@ from quatfilt._reference.geodesics.segment import segment
 from quatfilt._reference.motion.feet.displacements import foot_displacements
 from quatfilt._reference.motion.feet.place import place_feet
 from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
+from quatfilt._reference.noise.along_time import noise_along_time
+from quatfilt._reference.noise.axes import noise_axes
+from quatfilt._reference.noise.colour import noise_colour
+from quatfilt._reference.noise.motion import noise_over_motion
 from quatfilt._reference.noise.noise import noise_level
+from quatfilt._reference.noise.outliers import drawn_towards
 from quatfilt._reference.noise.repeats import find_repeats
+from quatfilt._reference.noise.whiten import unwhiten, whiten
 from quatfilt._reference.reconstruction.features import pose_features
 from quatfilt._reference.reconstruction.heading import split_heading
 from quatfilt._reference.reconstruction.local_models.predict import predict_pose
@@ -77,6 +83,7 @@ __all__ = [
     "continuous_euler",
     "decompress",
     "develop",
+    "drawn_towards",
     "exp",
     "fill_gaps",
     "find_repeats",
@@ -102,7 +109,11 @@ __all__ = [
     "multiply",
     "nearest_segments",
     "neighbor_graph",
+    "noise_along_time",
+    "noise_axes",
+    "noise_colour",
     "noise_level",
+    "noise_over_motion",
     "nonlocal_pose_means",
     "normalize",
     "one_euro",
@@ -132,5 +143,7 @@ __all__ = [
     "tracker_noise",
     "trusted",
     "undevelop",
+    "unwhiten",
     "weighted_moving_mean",
+    "whiten",
 ]

@@ -60,8 +60,14 @@ Feet: TypeAlias = Annotated[
 
 def placement(word: str) -> Placement | None:
     """Return what the word after ``--feet`` means."""
-    chosen = _validation.choice(word.strip().lower(), "--feet", (*PLACEMENTS, "none"))
-    return None if chosen == "none" else chosen
+    chosen = word.strip().lower()
+    if chosen == "none":
+        return None
+    if chosen not in PLACEMENTS:
+        raise ValueError(
+            f"--feet: expected one of {', '.join(map(repr, (*PLACEMENTS, 'none')))}, got {word!r}"
+        )
+    return _validation.choice(chosen, "--feet", PLACEMENTS)
 
 
 _WORDS: Mapping[str, Any] = {"none": None, "all": None, "true": True, "false": False}

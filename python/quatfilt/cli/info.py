@@ -54,7 +54,9 @@ def info(
     if report["source"]["says"]:
         _output.say(f"  {report['source']['says']}")
     if report["flips"]:
-        _output.say(f"  {_output.counted(report['flips'], 'flip')} of the whole body: the root turns by more than 90° in a frame")
+        _output.say(
+            f"  {_output.counted(report['flips'], 'flip')} of the whole body: the root turns by more than 90° in a frame"
+        )
     worst = sorted(
         joints,
         key=lambda joint: (

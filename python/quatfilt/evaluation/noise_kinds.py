@@ -116,7 +116,7 @@ def _along_time(choices: Sequence[float]) -> Vectors:
 
     def vectors(frames: int, joints: int, rng: Rng) -> Array:
         factors = rng.choice(choices, size=frames // STRETCH + 1)
-        return _white(frames, joints, rng) * np.repeat(factors, STRETCH)[:frames, None, None]
+        return np.asarray(_white(frames, joints, rng) * np.repeat(factors, STRETCH)[:frames, None, None])
 
     return vectors
 
@@ -131,15 +131,15 @@ def _bursts(frames: int, joints: int, rng: Rng) -> Array:
     factor = np.full(frames, 0.3)
     for start in starts(frames, 0.01, rng):
         factor[start : start + 20] = 6 * 0.3
-    return _white(frames, joints, rng) * factor[:, None, None]
+    return np.asarray(_white(frames, joints, rng) * factor[:, None, None])
 
 
 def _student(frames: int, joints: int, rng: Rng) -> Array:
-    return rng.standard_t(3, size=(frames, joints, 3)) / np.sqrt(3)
+    return np.asarray(rng.standard_t(3, size=(frames, joints, 3)) / np.sqrt(3))
 
 
 def _one_axis(frames: int, joints: int, rng: Rng) -> Array:
-    return _white(frames, joints, rng) * np.array([0.3, 0.3, 3.0])
+    return np.asarray(_white(frames, joints, rng) * np.array([0.3, 0.3, 3.0]))
 
 
 def _low_passed(frames: int, joints: int, rng: Rng) -> Array:
@@ -197,7 +197,9 @@ def _flips(body: Body, level: float, rng: Rng) -> Array:
 
 
 def _steps(body: Body, _level: float, _rng: Rng) -> Array:
-    degrees = Rotation.from_quat(body.rotations.reshape(-1, 4), scalar_first=True).as_euler("ZXY", degrees=True)
+    degrees = Rotation.from_quat(body.rotations.reshape(-1, 4), scalar_first=True).as_euler(
+        "ZXY", degrees=True
+    )
     stepped = Rotation.from_euler("ZXY", np.round(degrees), degrees=True).as_quat(scalar_first=True)
     return np.asarray(stepped.reshape(body.rotations.shape))
 
@@ -222,9 +224,13 @@ def _interpolated(body: Body, level: float, rng: Rng) -> Array:
 
 SINGLE: tuple[Kind, ...] = (
     Kind("white", "independent normal vectors", white),
-    Kind("ar5", "AR(1) in time, ρ = .5, stationary", _disturbed(_autoregressive(0.5))),
-    Kind("ar8", "AR(1) in time, ρ = .8, stationary", _disturbed(_autoregressive(0.8))),
-    Kind("unsteady", f"stretches of {STRETCH} frames at 2σ or σ/4, by chance", _disturbed(_along_time([2, 0.25]))),
+    Kind("ar5", "AR(1) in time, coefficient .5, stationary", _disturbed(_autoregressive(0.5))),
+    Kind("ar8", "AR(1) in time, coefficient .8, stationary", _disturbed(_autoregressive(0.8))),
+    Kind(
+        "unsteady",
+        f"stretches of {STRETCH} frames at 2σ or σ/4, by chance",
+        _disturbed(_along_time([2, 0.25])),
+    ),
     Kind(
         "bad-third",
         f"stretches of {STRETCH} frames, 1.5σ in one of three and σ/10 else, by chance",
@@ -234,12 +240,21 @@ SINGLE: tuple[Kind, ...] = (
     Kind("student", "Student's t with three degrees of freedom over √3", _disturbed(_student)),
     Kind("axis", ".3σ, .3σ and 3σ along x, y and z of the body", _disturbed(_one_axis)),
     Kind("held", "every fourth frame of white noise, four times", _held),
-    Kind("frozen", "the first half repeats its first frame; the second, white, counts", _frozen, counts=_second_half),
+    Kind(
+        "frozen",
+        "the first half repeats its first frame; the second, white, counts",
+        _frozen,
+        counts=_second_half,
+    ),
     Kind("swaps", "white; in one of 120 frames left and right are exchanged for 3 to 11 frames", _swapped),
     Kind("runs", "ar8; runs of 2 to 9 frames turned by 15° to 60°, in a joint one in 200 frames", _runs),
     Kind("flips", "ar8; runs of 2 to 9 frames in which the root is turned by 100° to 170°", _flips),
     Kind("steps", "Euler angles rounded to 1°", _steps, levelled=False),
-    Kind("low-passed", "white noise through a Gaussian of two frames, then scaled to σ", _disturbed(_low_passed)),
+    Kind(
+        "low-passed",
+        "white noise through a Gaussian of two frames, then scaled to σ",
+        _disturbed(_low_passed),
+    ),
     Kind(
         "interpolated",
         "white noise on the ticks of a clock, 10/3 or 20/3 frames apart, geodesics between them",
@@ -255,7 +270,10 @@ def _mixed(first: Kind, second: Kind) -> Kind:
         return second.add(body.replaced(first.add(body, each, rng)), each, rng)
 
     return Kind(
-        f"{first.name}+{second.name}", f"{first.name}, and on it {second.name}, both at σ/√2", add, counts=second.counts
+        f"{first.name}+{second.name}",
+        f"{first.name}, and on it {second.name}, both at σ/√2",
+        add,
+        counts=second.counts,
     )
 
 

@@ -43,7 +43,8 @@ EVERY = (1, 2, 4)
 """One frame of so many: 120, 60 and 30 frames per second."""
 
 CLASSICAL = tuple(
-    f"{name}, oracle" for name in ("Gaussian", "Kalman (smoother)", "wavelet", "Butterworth", "Savitzky-Golay")
+    f"{name}, oracle"
+    for name in ("Gaussian", "Kalman (smoother)", "wavelet", "Butterworth", "Savitzky-Golay")
 )
 """Rows of `methods.ROWS` whose best counts as the best classical filter."""
 
@@ -254,4 +255,14 @@ def _slide(motion: Motion, reference: Motion) -> float:
         return float("nan")
 
 
-__all__ = ["CLASSICAL_SEEDS", "EVERY", "LONGEST", "METHODS", "ROBUST_CLIPS", "Outcome", "Unchanged", "run", "versions"]
+__all__ = [
+    "CLASSICAL_SEEDS",
+    "EVERY",
+    "LONGEST",
+    "METHODS",
+    "ROBUST_CLIPS",
+    "Outcome",
+    "Unchanged",
+    "run",
+    "versions",
+]

@@ -80,7 +80,7 @@ def _conditions(report: Report) -> list[str]:
             f"`denoise(motion)` without options, beside its presets, `kalman` with its defaults and a Butterworth filter of 6 Hz (bw6), on "
             f"{len(report.clips)} recordings that no constant was tuned on: {clips}; the first {LONGEST} frames at 120 frames per second, or "
             f"every second or fourth of them. Noise is added to all joints, with {report.seeds} seeds; errors are those of the steady joints. "
-            "*Best classical* is the best of Gaussian, Kalman smoother, wavelet, Butterworth and Savitzky–Golay, each with the best of 17 "
+            "*Best classical* is the best of Gaussian, Kalman smoother, wavelet, Butterworth and Savitzky-Golay, each with the best of 17 "
             f"settings by the truth, on {min(CLASSICAL_SEEDS, report.seeds)} of the seeds."
         ),
         "",
@@ -133,7 +133,17 @@ def _rate(report: Report, fps: float) -> list[str]:
         "",
     ]
     lines += table(
-        ("kind", "level, rad", "input", *METHODS, "best classical", "margin", "worst", "peak kept", "foot slide"),
+        (
+            "kind",
+            "level, rad",
+            "input",
+            *METHODS,
+            "best classical",
+            "margin",
+            "worst",
+            "peak kept",
+            "foot slide",
+        ),
         [
             (
                 found[0].kind,
@@ -204,11 +214,15 @@ def _clean(report: Report) -> list[str]:
 
 def _kinds(report: Report) -> list[str]:
     lines = ["## The kinds of noise", "", "σ is the level. Lengths are in frames at every frame rate.", ""]
-    return [*lines, *table(("kind", "definition"), [(name, KINDS[name].says) for name in report.kinds], left=(0, 1)), ""]
+    return [
+        *lines,
+        *table(("kind", "definition"), [(name, KINDS[name].says) for name in report.kinds], left=(0, 1)),
+        "",
+    ]
 
 
 def _level(one: Outcome) -> str:
-    return "–" if one.level is None else f"{one.level:g}"
+    return "-" if one.level is None else f"{one.level:g}"
 
 
 def _mean(found: Iterable[Any], measure: Callable[[Any], float], digits: int = 1) -> str:

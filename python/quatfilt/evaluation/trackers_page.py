@@ -84,10 +84,7 @@ def _measures(report: Report) -> list[str]:
             (
                 take.name,
                 f"{take.before.fps:.3g}",
-                *(
-                    cell(value, 2)
-                    for value in (take.jerk_left, take.jerk_left_video, take.jerk_left_kalman)
-                ),
+                *(cell(value, 2) for value in (take.jerk_left, take.jerk_left_video, take.jerk_left_kalman)),
                 cell(take.slow_moved, 3),
                 f"{100 * take.masked:.0f} %",
                 cell(take.peaks_kept, 2),
@@ -104,7 +101,12 @@ def _measures(report: Report) -> list[str]:
 
 
 def _sources(report: Report) -> list[str]:
-    lines = ["## Sources", "", "The same words as `quatfilt info`. *Flips*: the root turns by more than 90° in a frame.", ""]
+    lines = [
+        "## Sources",
+        "",
+        "The same words as `quatfilt info`. *Flips*: the root turns by more than 90° in a frame.",
+        "",
+    ]
     rows = [(take.name, take.source or "every frame was measured", str(take.flips)) for take in report.takes]
     return [*lines, *table(("recording", "source", "flips"), rows, left=(0, 1)), ""]
 
@@ -140,7 +142,15 @@ def draw(report: Report, path: Path) -> None:
         coordinate = int(np.argmax(np.ptp(before, axis=0)))
         for axes in (wide, close):
             quiet(axes)
-            axes.plot(time, before[:, coordinate], color=NOISY, linewidth=1.0, marker=".", markersize=2, label="recording")
+            axes.plot(
+                time,
+                before[:, coordinate],
+                color=NOISY,
+                linewidth=1.0,
+                marker=".",
+                markersize=2,
+                label="recording",
+            )
             axes.plot(time, after[:, coordinate], color=DENOISED, linewidth=0.9, label="denoise")
         start = float(np.clip(time[frame] - CLOSE / 2, 0, max(time[-1] - CLOSE, 0)))
         close.set_xlim(start, start + CLOSE)

@@ -82,9 +82,13 @@ mod _core {
     #[pymodule_export]
     use super::motion::skeleton::{forward_kinematics, forward_kinematics_moving};
     #[pymodule_export]
+    use super::noise::model::{noise_along_time, noise_axes, noise_colour, noise_over_motion};
+    #[pymodule_export]
     use super::noise::noise::noise_level;
     #[pymodule_export]
     use super::noise::repeats::find_repeats;
+    #[pymodule_export]
+    use super::noise::whiten::{drawn_towards, unwhiten, whiten};
     #[pymodule_export]
     use super::reconstruction::features::pose_features;
     #[pymodule_export]

@@ -65,7 +65,11 @@ def test_splines_of_few_samples_and_of_positions(count, dtype):
     new = np.linspace(times[0] - 1, times[-1] + 1, 9)
     for values in (clips.walk(rng, count, 2), rng.normal(size=(count, 2, 3))):
         q = values.astype(dtype)
-        agree(_core.spline(q, times, new, 0.2), _reference.spline(q, times, new, 0.2), tolerances.filtered(q.dtype))
+        agree(
+            _core.spline(q, times, new, 0.2),
+            _reference.spline(q, times, new, 0.2),
+            tolerances.filtered(q.dtype),
+        )
         agree(
             _core.knots(q, np.arange(count) * 0.9),
             _reference.knots(q, np.arange(count) * 0.9),

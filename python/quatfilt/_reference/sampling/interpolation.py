@@ -102,7 +102,9 @@ def joints_that_bend(q: Reals) -> tuple[Reals, Mask, Mask]:
     for joint in range(bends.shape[1]):
         values = np.sort(relative[counted[:, joint], joint])
         if len(values):
-            bent[:, joint] = counted[:, joint] & (relative[:, joint] > STEP * values[int(HIGH * (len(values) - 1))])
+            bent[:, joint] = counted[:, joint] & (
+                relative[:, joint] > STEP * values[int(HIGH * (len(values) - 1))]
+            )
     return bends, counted, bent
 
 

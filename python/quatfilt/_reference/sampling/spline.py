@@ -1,5 +1,7 @@
 """From frames to the source's measurements, and back by a cubic spline of the development."""
 
+import itertools
+
 import numpy as np
 
 from quatfilt._reference._arrays import Mask, Reals
@@ -14,8 +16,12 @@ from quatfilt._reference.rotations.quaternion import (
     is_missing,
     log_short,
     multiply,
+    norm,
     normalize,
 )
+
+JUMP = 1.0
+"""Radians between two samples from which a joint jumps: a spline through a jump would swing on both sides of it."""
 
 ROUNDS = 4
 """How often the path is smoothed about the result of the round before."""
@@ -34,7 +40,7 @@ def knots(q: Reals, times: Reals) -> Reals:
     whole = np.floor(times).astype(np.intp)
     part = (times - whole)[:, None, None]
     before = np.maximum(whole - 1, 0)
-    values = q.astype(np.float64)
+    values: Reals = q.astype(np.float64)
     if q.shape[-1] == 3:
         return np.asarray(values[whole] + part * (values[whole] - values[before]), q.dtype)
     gone = is_missing(q)
@@ -53,6 +59,7 @@ def spline(q: Reals, times: Reals, new_times: Reals, cutoff: float) -> Reals:
         `Σ h_i |x_i − y_i|² + λ ∫ |x″|² dt → min`,    `λ = (2π · cutoff)⁻⁴`,
 
     with the local spacing `h_i` of the times as weights: gain 1/(1 + (f/cutoff)⁴). Beyond the ends the spline is a straight line.
+    Where a joint turns by more than `JUMP` between two samples, its spline is cut, and a geodesic leads across.
 
     Parameters
     ----------
@@ -87,7 +94,7 @@ def beside(times: Reals, new_times: Reals, gone: Mask) -> Mask:
     left = interval(times, new_times)
     right = np.minimum(left + 1, len(times) - 1)
     at = times[left] == new_times
-    return np.where(at, gone[left], gone[left] | gone[right])
+    return np.asarray(np.where(at, gone[left], gone[left] | gone[right]))
 
 
 def interval(times: Reals, new_times: Reals) -> np.ndarray:
@@ -102,20 +109,42 @@ def curve_of_vectors(values: Reals, times: Reals, new_times: Reals, stiffness: f
 
 
 def curve_of_rotations(values: Reals, times: Reals, new_times: Reals, stiffness: float) -> Reals:
-    """Spline of the development of rotations `(n, 4)`."""
+    """Splines of the development of rotations `(n, 4)`, cut where they jump; geodesics lead across the cuts."""
     path = continuous(normalize(values)[:, None])
+    steps = 2 * norm(log_short(between(path[:-1, 0], path[1:, 0])))
+    bounds = [0, *(np.flatnonzero(steps > JUMP) + 1).tolist(), len(path)]
+    smooth = path.copy()
+    for start, end in itertools.pairwise(bounds):
+        smooth[start:end] = smooth_path(path[start:end], times[start:end], stiffness)
+    left = interval(times, new_times)
+    right = np.minimum(left + 1, len(times) - 1)
+    span = np.where(right > left, times[right] - times[left], 1)
+    part = np.clip((new_times - times[left]) / span, 0, 1)[:, None]
+    result = multiply(smooth[left, 0], exp(part * log_short(between(smooth[left, 0], smooth[right, 0]))))
+    for start, end in itertools.pairwise(bounds):
+        inside = (new_times >= times[start]) | (start == 0)
+        inside &= (new_times <= times[end - 1]) | (end == len(path))
+        result[inside] = curve(smooth[start:end], times[start:end], new_times[inside])
+    return normalize(result)
+
+
+def smooth_path(path: Reals, times: Reals, stiffness: float) -> Reals:
+    """Smooth a path `(n, 1, 4)` of rotations, `ROUNDS` times about the result of the round before."""
     reference = path
     for _ in range(ROUNDS if stiffness > 0 else 0):
         frame, development, vectors = carried_about(reference, path)
         moved = smoothed(vectors[:, 0], times, stiffness)[:, None]
-        reference = normalize(
-            multiply(reference, exp(rotate(conjugate(frame), moved - development) / 2))
-        )
-    frame, development, _ = carried_about(reference, reference)
+        reference = normalize(multiply(reference, exp(rotate(conjugate(frame), moved - development) / 2)))
+    return reference
+
+
+def curve(path: Reals, times: Reals, new_times: Reals) -> Reals:
+    """Spline of the development of a path `(n, 1, 4)` at new times."""
+    frame, development, _ = carried_about(path, path)
     at = evaluated(development[:, 0], times, new_times)
     left = interval(times, new_times)
     way = rotate(conjugate(frame[left, 0]), at - development[left, 0])
-    return normalize(multiply(reference[left, 0], exp(way / 2)))
+    return normalize(multiply(path[left, 0], exp(way / 2)))
 
 
 def smoothed(values: Reals, times: Reals, stiffness: float) -> Reals:
@@ -133,7 +162,9 @@ def smoothed(values: Reals, times: Reals, stiffness: float) -> Reals:
         for i in range(3 - k):
             # Entry (c + k, c) of QᵀW⁻¹Q: rows that columns c and c + k share.
             rows = n - 2 - k
-            bands[k, :rows] += stiffness * q[i, k : k + rows] * q[i + k, :rows] / weights[i + k : i + k + rows]
+            bands[k, :rows] += (
+                stiffness * q[i, k : k + rows] * q[i + k, :rows] / weights[i + k : i + k + rows]
+            )
     curvature = solved(bands, second_differences(values, h))
     bent = np.zeros_like(values)
     for i in range(3):

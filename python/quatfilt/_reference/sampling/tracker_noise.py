@@ -22,7 +22,7 @@ RESTLESS = 0.2
 
 ACCELERATION_QUANTILE = 0.95
 
-ACCELERATIONS = (160.0, 240.0)
+ACCELERATIONS = (220.0, 320.0)
 """Radians per second squared: recordings of people stay below the first, and above the second it is certainly noise."""
 
 EXCESSES = (0.10, 0.14)
@@ -34,21 +34,21 @@ SHAPES = (0.15, 0.25)
 WHITE = 1.4
 """Power at 11 to 15 Hz over that at 7 to 9 Hz, from which noise is white: left to the method for white noise."""
 
-CUTOFFS = (4.5, 8.0)
-"""Hertz: lowest and highest cut-off."""
+CUTOFFS = (6.5, 7.5)
+"""Hertz: lowest and highest cut-off. Lower ones flatten peaks, and estimate withheld measurements worse than a straight line does."""
 
 
 def tracker_noise(q: Reals, fps: float) -> Reals:
     """Measure whether a clip jitters as estimates from video do, and where a filter should cut it off.
 
     Spectra of the angular velocity in Hann windows of `SECONDS` that overlap by half give, as medians over joints and windows, the excess
-    `E`, the shape, and the whiteness; and the acceleration is the median over the joints of a quantile. With the ramp `ρ(x; a, b)` from 0 at
+    `E`, the shape, and the whiteness; and the acceleration is the median over the joints of a quantile. With the ramp `R(x; a, b)` from 0 at
     `a` to 1 at `b`,
 
-        `u = ρ(acceleration; 160, 240) · ρ(E; .10, .14) · ρ(shape; .15, .25)`,    0 where the noise is white.
+        `u = R(acceleration; 220, 320) · R(E; .10, .14) · R(shape; .15, .25)`,    0 where the noise is white.
 
     Clean motion falls as `f^−1.45`, white excess grows as `f²`; they cross at `(123 / (E − .096))^(1/3.45)` Hz. A doubtful `u` moves
-    the cut-off up: `f_c = clip(…, 4.5, 8) · u^−.29`.
+    the cut-off up: `f_c = clip(…, 6.5, 7.5) · u^−.29`.
 
     Parameters
     ----------
@@ -131,5 +131,3 @@ def middle(values: Reals) -> float:
 def ramp(x: float, low: float, high: float) -> float:
     """Return 0 below `low`, 1 above `high`, and a straight line between."""
     return float(np.clip((x - low) / (high - low), 0, 1))
-
-

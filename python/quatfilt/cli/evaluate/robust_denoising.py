@@ -54,8 +54,12 @@ def robust_denoising(
     pywavelets()
     recordings = load(data, {name: robust.ROBUST_CLIPS[name] for name in names}, longest=robust.LONGEST)
     with progress("cleaning") as done:
-        outcomes, unchanged = robust.run(recordings, seeds=seeds, kinds=chosen, workers=workers, progress=done)
-    given = "".join(f" {option} {value}" for option, value in (("--clips", clips), ("--kinds", kinds)) if value)
+        outcomes, unchanged = robust.run(
+            recordings, seeds=seeds, kinds=chosen, workers=workers, progress=done
+        )
+    given = "".join(
+        f" {option} {value}" for option, value in (("--clips", clips), ("--kinds", kinds)) if value
+    )
     report = page.Report(
         clips=recordings,
         outcomes=outcomes,

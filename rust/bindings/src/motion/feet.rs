@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use quatfilt_core::motion::feet::{self, Body, Displacements, FootPaths, Placed};
 
 /// When feet stand on the ground, and by how much they are to be moved.
+#[allow(clippy::too_many_arguments, reason = "those of the reference")]
 #[pyfunction]
 #[pyo3(signature = (before, after, lengths, up, fps, given, lock, /))]
 pub(crate) fn foot_displacements(
@@ -55,6 +56,7 @@ pub(crate) fn foot_displacements(
 }
 
 /// Legs that bring feet where they belong.
+#[allow(clippy::too_many_arguments, reason = "those of the reference")]
 #[pyfunction]
 #[pyo3(signature = (rotations, translation, local, parents, pelvis, legs, lengths, displacements, root, lock, /))]
 pub(crate) fn place_feet(

@@ -12,6 +12,9 @@ use crate::rotations::quaternion::{
 };
 use crate::{Error, Real};
 
+/// Radians between two samples from which a joint jumps: a spline through a jump would swing on both sides of it.
+const JUMP: f64 = 1.0;
+
 /// How often the path is smoothed about the result of the round before.
 const ROUNDS: usize = 4;
 
@@ -131,7 +134,7 @@ fn column<T: Real>(
     if q.width == 3 {
         let values: Vec<Vector> = (0..times.len()).map(|i| q.vector(i, joint)).collect();
         let smooth = smoothed(&values, times, stiffness);
-        let curve = Curve::new(&smooth, times);
+        let curve = Curve { values: &smooth, times, curvature: &curvature(&smooth, times) };
         for (result, &time) in result.iter_mut().zip(new_times) {
             let [x, y, z] = curve.at(time).1;
             *result = [x, y, z, 0.0];
@@ -150,33 +153,78 @@ fn column<T: Real>(
             path[i] = negative(path[i]);
         }
     }
-    let mut reference = path.clone();
+    // The first sample of each piece between jumps, and the end.
+    let jumps = |&i: &usize| {
+        let half = log_short(between(path[i - 1], path[i]));
+        2.0 * (half[0] * half[0] + half[1] * half[1] + half[2] * half[2]).sqrt() > JUMP
+    };
+    let mut starts: Vec<usize> = std::iter::once(0).chain((1..path.len()).filter(jumps)).collect();
+    starts.push(path.len());
+    let mut smooth = path.clone();
+    for piece in starts.windows(2) {
+        let piece = piece[0]..piece[1];
+        smooth_path(&path[piece.clone()], &known[piece.clone()], stiffness, &mut smooth[piece]);
+    }
+    let pieces: Vec<Piece> = starts
+        .windows(2)
+        .map(|piece| {
+            let (frame, development) = carried(&smooth[piece[0]..piece[1]]);
+            Piece { start: piece[0], frame, curvature: curvature(&development, &known[piece[0]..piece[1]]), development }
+        })
+        .collect();
+    for (result, &time) in result.iter_mut().zip(new_times) {
+        let left = interval(times, time);
+        let right = (left + 1).min(times.len() - 1);
+        let between_samples = times[left] < time || times[left] > time;
+        if samples[left].is_none() || between_samples && samples[right].is_none() {
+            continue;
+        }
+        // The sample before the time, or the first one.
+        let at = known.partition_point(|&t| t <= time).saturating_sub(1);
+        let number = starts.partition_point(|&start| start <= at) - 1;
+        let across = time > known[at] && at + 1 < path.len() && at + 1 == starts[number + 1];
+        *result = if across {
+            let part = (time - known[at]) / (known[at + 1] - known[at]);
+            let half = log_short(between(smooth[at], smooth[at + 1]));
+            unit(product(smooth[at], exp_one(half.map(|x| part * x))))
+        } else {
+            let piece = &pieces[number];
+            let end = starts[number + 1];
+            let curve = Curve {
+                values: &piece.development,
+                times: &known[piece.start..end],
+                curvature: &piece.curvature,
+            };
+            let (i, at) = curve.at(time);
+            unit(turned(smooth[piece.start + i], piece.frame[i], at, piece.development[i]))
+        };
+    }
+    result
+}
+
+/// A path between two jumps, rolled out.
+struct Piece {
+    start: usize,
+    frame: Vec<Quaternion>,
+    curvature: Vec<Vector>,
+    development: Vec<Vector>,
+}
+
+/// Smooths a path, [`ROUNDS`] times about the result of the round before; `reference` holds the path before.
+fn smooth_path(path: &[Quaternion], times: &[f64], stiffness: f64, reference: &mut [Quaternion]) {
     for _ in 0..if stiffness > 0.0 { ROUNDS } else { 0 } {
-        let (frame, development) = carried(&reference);
+        let (frame, development) = carried(reference);
         let vectors: Vec<Vector> = (0..path.len())
             .map(|i| {
                 let way = log_short(between(reference[i], path[i])).map(|x| 2.0 * x);
                 sum(development[i], rotate(frame[i], way))
             })
             .collect();
-        let moved = smoothed(&vectors, &known, stiffness);
+        let moved = smoothed(&vectors, times, stiffness);
         for i in 0..path.len() {
             reference[i] = unit(turned(reference[i], frame[i], moved[i], development[i]));
         }
     }
-    let (frame, development) = carried(&reference);
-    let curve = Curve::new(&development, &known);
-    for (result, &time) in result.iter_mut().zip(new_times) {
-        let left = interval(times, time);
-        let right = (left + 1).min(times.len() - 1);
-        let gone =
-            samples[left].is_none() || (times[left] < time || times[left] > time) && samples[right].is_none();
-        if !gone {
-            let (i, at) = curve.at(time);
-            *result = unit(turned(reference[i], frame[i], at, development[i]));
-        }
-    }
-    result
 }
 
 /// The rotation `r · exp(h⁻¹ (x − R) / 2)`.
@@ -211,20 +259,21 @@ fn interval(times: &[f64], time: f64) -> usize {
 struct Curve<'a> {
     values: &'a [Vector],
     times: &'a [f64],
-    curvature: Vec<Vector>,
+    curvature: &'a [Vector],
 }
 
-impl<'a> Curve<'a> {
-    fn new(values: &'a [Vector], times: &'a [f64]) -> Self {
-        let mut curvature = vec![[0.0; 3]; values.len()];
-        if values.len() > 2 {
-            let h = spacing(times);
-            let inner = solve(curvature_bands(&h), second_differences(values, &h));
-            curvature[1..values.len() - 1].copy_from_slice(&inner);
-        }
-        Self { values, times, curvature }
+/// Second derivatives of the natural cubic spline at its knots.
+fn curvature(values: &[Vector], times: &[f64]) -> Vec<Vector> {
+    let mut curvature = vec![[0.0; 3]; values.len()];
+    if values.len() > 2 {
+        let h = spacing(times);
+        let inner = solve(curvature_bands(&h), second_differences(values, &h));
+        curvature[1..values.len() - 1].copy_from_slice(&inner);
     }
+    curvature
+}
 
+impl Curve<'_> {
     /// The interval of a time, and the value there; straight lines lead beyond the ends.
     fn at(&self, time: f64) -> (usize, Vector) {
         let n = self.values.len();
@@ -338,7 +387,7 @@ mod tests {
     fn the_curve_goes_through_its_knots_and_on_in_straight_lines() {
         let times = [0.0, 1.0, 2.5, 3.0, 5.0];
         let values: Vec<Vector> = times.iter().map(|&t| [t * t, 1.0 - t, 2.0]).collect();
-        let curve = Curve::new(&values, &times);
+        let curve = Curve { values: &values, times: &times, curvature: &curvature(&values, &times) };
         for (time, value) in times.iter().zip(&values) {
             let found = curve.at(*time).1;
             assert!(found.iter().zip(value).all(|(a, b)| (a - b).abs() < 1e-12));

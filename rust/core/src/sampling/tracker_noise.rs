@@ -2,7 +2,7 @@
 //!
 //! Spectra of the angular velocity in Hann windows that overlap by half give, as medians over joints and windows, the excess `E`, the shape,
 //! and the whiteness; the acceleration is the median over the joints of a quantile. Then, with ramps from 0 to 1,
-//! `u = ρ(acceleration) ρ(E) ρ(shape)`. Clean motion falls as `f^−1.45`, white excess grows as `f²`; they cross at
+//! `u = R(acceleration) R(E) R(shape)`. Clean motion falls as `f^−1.45`, white excess grows as `f²`; they cross at
 //! `(123 / (E − .096))^(1/3.45)` Hz, and a doubtful `u` moves the cut-off up by `u^−.29`.
 
 use super::{difference, increments, length, middle, quantile};
@@ -27,7 +27,7 @@ const RESTLESS: f64 = 0.2;
 const ACCELERATION_QUANTILE: f64 = 0.95;
 
 /// Radians per second squared: recordings of people stay below the first, and above the second it is certainly noise.
-const ACCELERATIONS: (f64, f64) = (160.0, 240.0);
+const ACCELERATIONS: (f64, f64) = (220.0, 320.0);
 
 /// Power at 7 to 9 Hz over that at 0.4 to 3 Hz: clean motion has about 0.1.
 const EXCESSES: (f64, f64) = (0.10, 0.14);
@@ -38,8 +38,8 @@ const SHAPES: (f64, f64) = (0.15, 0.25);
 /// Power at 11 to 15 Hz over that at 7 to 9 Hz, from which noise is white.
 const WHITE: f64 = 1.4;
 
-/// Hertz: lowest and highest cut-off.
-const CUTOFFS: (f64, f64) = (4.5, 8.0);
+/// Hertz: lowest and highest cut-off. Lower ones flatten peaks, and estimate withheld measurements worse than a straight line does.
+const CUTOFFS: (f64, f64) = (6.5, 7.5);
 
 /// Estimated nanoseconds per frame that is looked at and joint.
 const NANOSECONDS: usize = 600;
@@ -142,9 +142,13 @@ impl Window {
         if !(speed.is_finite() && speed > FASTEST) {
             return None;
         }
-        let mean: [f64; 3] = std::array::from_fn(|c| velocity.iter().map(|v| v[c]).sum::<f64>() / count);
-        let values: Vec<[f64; 3]> =
-            velocity.iter().zip(&self.hann).map(|(&v, hann)| difference(v, mean).map(|x| x * hann)).collect();
+        let mean: [f64; 3] =
+            std::array::from_fn(|c| velocity.iter().map(|v| v[c]).sum::<f64>() / count);
+        let values: Vec<[f64; 3]> = velocity
+            .iter()
+            .zip(&self.hann)
+            .map(|(&v, hann)| difference(v, mean).map(|x| x * hann))
+            .collect();
         let [low, medium, high, top] = self.bands.each_ref().map(|waves| power(&values, waves));
         Some([high / low, high / medium, top / high])
     }

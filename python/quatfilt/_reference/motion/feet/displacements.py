@@ -12,7 +12,7 @@ LEG = 90.0
 SIGMAS = (0.4, 0.28, 0.2, 0.14, 0.1, 0.07, 0.05, 0.035, 0.025, 0.0175, 0.0125)
 """Seconds: deviations of the low-passes that are tried for a target, the longest first; then the path itself is the target."""
 
-ALWAYS, MOST_FRAMES = 0.1, 17.0
+ALWAYS, MOST_FRAMES = 0.1, 12.5
 """Seconds and frames: a deviation is tried if it is not above one of these. Few frames per second need more time against noise."""
 
 FIT = 0.35

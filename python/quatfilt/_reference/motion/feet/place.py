@@ -32,6 +32,9 @@ ROOT_TRANSLATION, ROOT_ROTATION, KNEE = 0.3, 0.5, 0.5
 ANKLE = 0.5
 """Part of the change of an ankle that is applied when feet are kept, not locked."""
 
+MOST_ANKLE = np.radians(3.0)
+"""Radians: an ankle is turned by no more where feet are kept, not locked."""
+
 LEAST_HINGE = 1e-12
 """Sum of squares of a knee's rotation steps, in rad², below which it has no axis to bend about."""
 
@@ -126,7 +129,7 @@ def place_feet(
     before = multiply(above, q[frames, pelvis])
     turned, shifted = solved(new, known, lengths, before, at, wanted[:, :, 0], root)
     for i, leg in enumerate(legs):
-        ankle = turned_ankle(old[i], new[i], before, turned, wanted[:, i], 1.0 if lock else ANKLE)
+        ankle = turned_ankle(old[i], new[i], before, turned, wanted[:, i], lock=lock)
         for joint, value in zip(leg[:3], (new[i].hip, new[i].knee, ankle), strict=True):
             result[frames[known[:, i]], joint] = value[known[:, i]]
     if root:
@@ -295,9 +298,9 @@ def ankle_of(leg: Chain, turned: Reals, shifted: Reals) -> Reals:
 
 
 def turned_ankle(
-    old: Chain, new: Chain, old_root: Reals, new_root: Reals, wanted: Reals, part: float
+    old: Chain, new: Chain, old_root: Reals, new_root: Reals, wanted: Reals, *, lock: bool
 ) -> Reals:
-    """Return the rotation of an ankle in the shank that turns the foot to its goal, or a part of the angle to there; `(frames, 4)`."""
+    """Return the rotation of an ankle in the shank that turns the foot to its goal, or, where feet are kept, by half as much and no more than `MOST_ANKLE`; `(frames, 4)`."""
     origin = np.zeros((len(old_root), 3))
     before = multiply(places_of(old, old_root, origin).shank, old.to_ankle)
     after = multiply(places_of(new, new_root, origin).shank, new.to_ankle)
@@ -305,7 +308,11 @@ def turned_ankle(
     sole = rotate(foot, old.toe_at)
     goal = multiply(least_rotation(sole, sole + wanted[:, 1] - wanted[:, 0]), foot)
     change = log_short(between(old.ankle, between(after, goal)))
-    return normalize(multiply(old.ankle, exp(part * change)))
+    if not lock:
+        change = ANKLE * change
+        angle = 2 * norm(change)[:, None]
+        change = change * np.minimum(1, MOST_ANKLE / np.where(angle > MOST_ANKLE, angle, MOST_ANKLE))
+    return normalize(multiply(old.ankle, exp(change)))
 
 
 def least_rotation(u: Reals, v: Reals) -> Reals:

@@ -268,11 +268,9 @@ multiversion! {
 
 multiversion! {
     fn units<T: Real>(q: &mut [[T; CHUNK]; 4]) {
+        let [w, x, y, z] = q;
         for i in 0..CHUNK {
-            let one = unit([q[0][i], q[1][i], q[2][i], q[3][i]]);
-            for c in 0..4 {
-                q[c][i] = one[c];
-            }
+            [w[i], x[i], y[i], z[i]] = unit([w[i], x[i], y[i], z[i]]);
         }
     }
 }

@@ -3,7 +3,7 @@
 //! The gain is `1/(1 + r⁶)`, `r = sin(π f/fps) / sin(π f_c/fps)`; parabolas stay as they are.
 
 use super::joint::{LEAST_WEIGHT, inverses};
-use super::penalised::{HIGHEST, Memory, penalised};
+use super::penalised::{HIGHEST, LANES, Row, penalised};
 use crate::Error;
 use crate::clip::Planes;
 use crate::filters::development::{Columns, Smooth};
@@ -42,18 +42,28 @@ impl Smooth for LowPass {
         if frames <= ORDER {
             return Ok(());
         }
-        spare.reshape(4 + HIGHEST, frames);
-        let [variances, softness, solution, pivots, lower @ ..] = spare.rows_mut::<{ 4 + HIGHEST }>(0);
-        variances.fill(1.0);
-        if let Some(trust) = columns.trust {
+        // Three columns, and one of zeros to fill the lanes.
+        let padded = columns.vectors[0].len();
+        spare.reshape(1, (3 + LANES * (1 + HIGHEST)) * padded);
+        let (variances, memory) = spare.row_mut(0).split_at_mut(padded);
+        let (softness, memory) = memory.split_at_mut(padded);
+        let (zeros, rows) = memory.split_at_mut(padded);
+        let (rows, _) = rows.as_chunks_mut::<LANES>();
+        let (rows, _): (&mut [Row], _) = rows.as_chunks_mut::<{ 1 + HIGHEST }>();
+        let variances = columns.trust.map(|trust| {
             inverses(trust, LEAST_WEIGHT, variances);
-        }
+            &variances[..frames]
+        });
         softness.fill(self.softness);
-        let softness = &softness[..frames - ORDER];
-        let mut memory = Memory { solution, pivots, lower };
-        for vector in columns.vectors {
-            penalised(ORDER, &mut vector[..frames], variances, softness, &mut memory, interrupt)?;
-        }
-        Ok(())
+        zeros.fill(0.0);
+        let [x, y, z] = columns.vectors;
+        penalised(
+            [ORDER; LANES],
+            [x, y, z, zeros].map(|column| &mut column[..frames]),
+            variances,
+            [&softness[..frames]; LANES],
+            rows,
+            interrupt,
+        )
     }
 }

@@ -124,8 +124,8 @@ impl Forth {
             for k in 0..=HIGHEST {
                 let mut band = [0.0; LANES];
                 for i in 0..=HIGHEST - k {
-                    for l in 0..LANES {
-                        band[l] += self.steps[i + k][l] * self.steps[i][l] * self.variances[i + k];
+                    for (l, band) in band.iter_mut().enumerate() {
+                        *band += self.steps[i + k][l] * self.steps[i][l] * self.variances[i + k];
                     }
                 }
                 self.bands[k] = band;
@@ -223,8 +223,8 @@ impl Back {
         let variance = variances.and_then(|variances| variances.get(frame)).copied().unwrap_or(1.0);
         let mut roughness = [0.0; LANES];
         for i in 0..=HIGHEST {
-            for l in 0..LANES {
-                roughness[l] += self.steps[i][l] * self.solution[HIGHEST - i][l];
+            for (l, roughness) in roughness.iter_mut().enumerate() {
+                *roughness += self.steps[i][l] * self.solution[HIGHEST - i][l];
             }
         }
         for l in 0..LANES {

@@ -2,8 +2,8 @@
 
 use super::paths::low_passed;
 use super::{Point, runs, speeds};
-use crate::Error;
 use crate::parallel::Interrupt;
+use crate::{Error, Real};
 
 /// Seconds and centimetres: with the noise `ν` the path is low-passed with the deviation `0.05 ν / (ν + 0.3)` s, or noise looks like
 /// speed.
@@ -52,7 +52,7 @@ pub(super) fn find(
         return Ok(result);
     }
     let path = low_passed(y, LOW_PASS * noise / (noise + LOW_PASS_NOISE) * fps, interrupt)?;
-    let extra = noise.min(MOST_NOISE);
+    let extra = f64::min(noise, MOST_NOISE);
     let speed = speeds(&path);
     let height: Vec<f64> = path.iter().map(|point| if down { -point[up] } else { point[up] }).collect();
     let ground = percentile(height.iter().zip(known).filter(|&(_, &known)| known).map(|(&h, _)| h).collect());
@@ -74,7 +74,7 @@ pub(super) fn find(
             result[gap].fill(true);
         }
     }
-    let shortest = SHORTEST * fps * (noise / CHANCE).min(1.0);
+    let shortest = SHORTEST * fps * f64::min(noise / CHANCE, 1.0);
     for run in runs(&result.clone()) {
         if run.len() < FEWEST || (run.len() as f64) < shortest {
             result[run].fill(false);
@@ -86,7 +86,7 @@ pub(super) fn find(
 /// The height below which a share [`GROUND`] of the heights lies, interpolated; heights are numbers, and at least one.
 fn percentile(mut heights: Vec<f64>) -> f64 {
     let place = GROUND * (heights.len() - 1) as f64;
-    let below = (place.floor() as usize).min(heights.len() - 1);
+    let below = place.to_count().min(heights.len() - 1);
     let (_, &mut low, above) = heights.select_nth_unstable_by(below, f64::total_cmp);
     let next = above.iter().copied().fold(f64::INFINITY, f64::min);
     let part = place - below as f64;

@@ -85,21 +85,21 @@ pub fn foot_displacements<T: Real>(
     out: Displacements<'_>,
     interrupt: &Interrupt,
 ) -> Result<(), Error> {
-    let legs = paths.lengths.len();
-    let joints = legs * PARTS;
+    let Displacements { displacements, contacts: standing } = out;
+    let joints = paths.lengths.len() * PARTS;
     let frames = paths.before.len() / (joints * 3).max(1);
     check_length("before", frames * joints * 3, paths.before.len())?;
     check_length("after", paths.before.len(), paths.after.len())?;
-    check_length("displacements", paths.before.len(), out.displacements.len())?;
-    check_length("contacts", frames * joints, out.contacts.len())?;
+    check_length("displacements", paths.before.len(), displacements.len())?;
+    check_length("contacts", frames * joints, standing.len())?;
     if let Some(contacts) = paths.contacts {
         check_length("contacts", frames * joints, contacts.len())?;
     }
     if paths.up > 2 {
         return Err(Error::Parameter { name: "up", expected: "an axis, 0 to 2" });
     }
-    out.displacements.fill(0.0);
-    out.contacts.fill(false);
+    displacements.fill(0.0);
+    standing.fill(false);
     if frames < 2 {
         return Ok(());
     }
@@ -113,11 +113,11 @@ pub fn foot_displacements<T: Real>(
             let [a, b] = both(ankle, toe, t, paths.lock);
             let at = t * joints + leg * PARTS;
             for (part, point) in [a, b].into_iter().enumerate() {
-                let to = &mut out.displacements[(at + part) * 3..(at + part + 1) * 3];
+                let to = &mut displacements[(at + part) * 3..(at + part + 1) * 3];
                 to.copy_from_slice(&point.map(|x| x / scale));
             }
-            out.contacts[at] = ankle.contacts[t];
-            out.contacts[at + 1] = toe.contacts[t];
+            standing[at] = ankle.contacts[t];
+            standing[at + 1] = toe.contacts[t];
         }
     }
     Ok(())

@@ -22,9 +22,9 @@ pub(super) fn complete(path: &mut [Point]) {
     for pair in known.windows(2) {
         let (a, b) = (pair[0], pair[1]);
         let (from, to) = (path[a], path[b]);
-        for t in a + 1..b {
+        for (i, point) in path[a + 1..b].iter_mut().enumerate() {
             let slope: Point = std::array::from_fn(|c| (to[c] - from[c]) / (b - a) as f64);
-            path[t] = std::array::from_fn(|c| slope[c] * (t - a) as f64 + from[c]);
+            *point = std::array::from_fn(|c| slope[c] * (i + 1) as f64 + from[c]);
         }
     }
 }

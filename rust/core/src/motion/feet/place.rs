@@ -25,6 +25,9 @@ const KNEE: f64 = 0.5;
 /// Part of the change of an ankle that is applied when feet are kept, not locked.
 const ANKLE: f64 = 0.5;
 
+/// Radians: an ankle is turned by no more where feet are kept, not locked.
+const MOST_ANKLE: f64 = 3.0 * std::f64::consts::PI / 180.0;
+
 /// Sum of squares of a knee's rotation steps, in rad², below which it has no axis to bend about.
 const LEAST_HINGE: f64 = 1e-12;
 
@@ -160,15 +163,16 @@ pub fn place_feet<T: Real>(
     interrupt: &Interrupt,
 ) -> Result<(), Error> {
     body.check(&out)?;
-    out.rotations.copy_from_slice(body.rotations.data());
-    out.translation.copy_from_slice(body.translation);
+    let Placed { rotations, translation } = out;
+    rotations.copy_from_slice(body.rotations.data());
+    translation.copy_from_slice(body.translation);
     let joints = body.rotations.joints();
     let hinges =
         parallel::map((0..body.legs.len()).collect(), body.rotations.frames() * 60, |_, leg: usize| {
             hinge(body.rotations, body.legs[leg][1], interrupt)
         })?;
-    let rotations = out.rotations.chunks_mut(TILE * joints * 4);
-    let tiles: Vec<(&mut [T], &mut [T])> = rotations.zip(out.translation.chunks_mut(TILE * 3)).collect();
+    let rotations = rotations.chunks_mut(TILE * joints * 4);
+    let tiles: Vec<(&mut [T], &mut [T])> = rotations.zip(translation.chunks_mut(TILE * 3)).collect();
     parallel::for_each(tiles, body.nanoseconds(), |tile, (rotations, translation)| {
         interrupt.check()?;
         let rows = rotations.chunks_exact_mut(joints * 4).zip(translation.chunks_exact_mut(3));
@@ -214,10 +218,9 @@ fn one_frame<T: Real>(
     }
     let length = body.lengths.iter().sum::<f64>() / body.lengths.len() as f64;
     let (turned, shifted) = solve(&mut legs, length, before, position, body.root);
-    let part = if body.lock { 1.0 } else { ANKLE };
     for (leg, joints) in legs.iter().zip(body.legs) {
         let Some(leg) = leg else { continue };
-        let ankle = turned_ankle(leg, before, turned, part);
+        let ankle = turned_ankle(leg, before, turned, body.lock);
         for (&joint, q) in joints.iter().zip([leg.new.hip, leg.new.knee, ankle]) {
             write(q, &mut rotations[joint * 4..joint * 4 + 4]);
         }
@@ -346,11 +349,9 @@ fn crossed(r: Point, s: Point) -> [Point; 3] {
 fn cholesky(matrix: &mut [[f64; ROWS]; ROWS], right: &mut [f64; ROWS]) {
     for i in 0..ROWS {
         for j in 0..=i {
-            let mut sum = matrix[i][j];
-            for k in 0..j {
-                sum -= matrix[i][k] * matrix[j][k];
-            }
-            matrix[i][j] = if i == j { sum.sqrt() } else { sum / matrix[j][j] };
+            let before: f64 = matrix[i][..j].iter().zip(&matrix[j][..j]).map(|(a, b)| a * b).sum();
+            let rest = matrix[i][j] - before;
+            matrix[i][j] = if i == j { rest.sqrt() } else { rest / matrix[j][j] };
         }
     }
     for i in 0..ROWS {
@@ -367,8 +368,9 @@ fn cholesky(matrix: &mut [[f64; ROWS]; ROWS], right: &mut [f64; ROWS]) {
     }
 }
 
-/// The rotation of an ankle in the shank that turns the foot to its goal, or a part of the angle to there.
-fn turned_ankle(leg: &Leg, before: [f64; 4], turned: [f64; 4], part: f64) -> [f64; 4] {
+/// The rotation of an ankle in the shank that turns the foot to its goal, or, where feet are kept, by half as much and no more
+/// than [`MOST_ANKLE`].
+fn turned_ankle(leg: &Leg, before: [f64; 4], turned: [f64; 4], lock: bool) -> [f64; 4] {
     let origin = [0.0; 3];
     let old = product(leg.old.places(before, origin).shank, leg.old.to_ankle);
     let new = product(leg.new.places(turned, origin).shank, leg.new.to_ankle);
@@ -377,6 +379,12 @@ fn turned_ankle(leg: &Leg, before: [f64; 4], turned: [f64; 4], part: f64) -> [f6
     let [ankle, toe] = leg.wanted;
     let goal = product(least_rotation(sole, add(sole, subtract(toe, ankle))), foot);
     let change = log_short(between(leg.old.ankle, between(new, goal)));
+    let part = if lock {
+        1.0
+    } else {
+        let angle = 2.0 * ANKLE * norm(change);
+        if angle > MOST_ANKLE { ANKLE * (MOST_ANKLE / angle) } else { ANKLE }
+    };
     unit(product(leg.old.ankle, exp_one(scaled(change, part))))
 }
 

@@ -3,8 +3,8 @@
 use super::contacts::FEWEST;
 use super::paths::low_passed;
 use super::{Point, speeds};
-use crate::Error;
 use crate::parallel::Interrupt;
+use crate::{Error, Real};
 use std::ops::Range;
 
 /// Seconds: deviations of the low-passes that are tried, the longest first; then the path itself is the target.
@@ -12,7 +12,7 @@ const SIGMAS: [f64; 11] = [0.4, 0.28, 0.2, 0.14, 0.1, 0.07, 0.05, 0.035, 0.025, 
 
 /// Seconds and frames: a deviation is tried if it is not above one of these. Few frames per second need more time against noise.
 const ALWAYS: f64 = 0.1;
-const MOST_FRAMES: f64 = 17.0;
+const MOST_FRAMES: f64 = 12.5;
 
 /// Of the noise: root mean square per coordinate by which a low-pass may move the path within a contact.
 const FIT: f64 = 0.35;
@@ -57,8 +57,8 @@ pub(super) fn hold(
     fps: f64,
 ) {
     let sides = [(up + 1) % 3, (up + 2) % 3];
-    let shortest = FEWEST.max((SHORTEST_HOLD * fps).ceil() as usize);
-    let gap = ((STEP * fps).round_ties_even() as usize).max(1);
+    let shortest = FEWEST.max((SHORTEST_HOLD * fps).ceil().to_count());
+    let gap = (STEP * fps).round_ties_even().to_count().max(1);
     let speed = speeds(y);
     let mut waiting = vec![contact];
     while let Some(Range { start, end }) = waiting.pop() {
@@ -69,7 +69,7 @@ pub(super) fn hold(
         let extent = |side: usize| {
             let (low, high) =
                 y[start..end].iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), point| {
-                    (low.min(point[side]), high.max(point[side]))
+                    (f64::min(low, point[side]), f64::max(high, point[side]))
                 });
             high - low
         };
@@ -97,5 +97,5 @@ fn median(mut values: Vec<f64>) -> f64 {
     let middle = values.len() / 2;
     let even = values.len().is_multiple_of(2);
     let (below, &mut high, _) = values.select_nth_unstable_by(middle, f64::total_cmp);
-    if even { (below.iter().copied().fold(f64::NEG_INFINITY, f64::max) + high) / 2.0 } else { high }
+    if even { below.iter().copied().fold(f64::NEG_INFINITY, f64::max).midpoint(high) } else { high }
 }

@@ -41,7 +41,7 @@ const SHARE: f64 = 0.35;
 const PASS: usize = 16;
 
 /// Estimated nanoseconds per frame, joint and joint: products and eigenvectors.
-const NANOSECONDS: usize = 60;
+const NANOSECONDS: usize = 20;
 
 /// Takes the mean of the pilot and of an estimate that has low rank in bands of frequencies.
 ///
