@@ -30,8 +30,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quatfilt._reference._arrays import Reals
-from quatfilt._reference.filters.boundary import Boundary, extend_by_index, extend_vectors
+from quatfilt._reference.filters.columns import gaussian_mask, weighted_mean
 from quatfilt._reference.filters.nonlocal_pose_means.nonlocal_pose_means import in_hemisphere_of
+from quatfilt._reference.filters.spin import FAST, mean_turns, rolled
 from quatfilt._reference.motion.skeleton import rotate
 from quatfilt._reference.noise.coherence import coherence
 from quatfilt._reference.rotations.quaternion import (
@@ -47,6 +48,10 @@ from quatfilt._reference.rotations.quaternion import (
 SHORTEST_MEAN = 0.1
 """Length of an average of unit quaternions below which its direction is chance: the frames turn right round within the
 mask."""
+
+LONG_MEAN = 0.75
+"""Length of an average of unit quaternions below which the joint may be spinning. At 1.5 rad within a deviation of the mask it
+is `exp(−1.5²/8)`; noise alone leaves as little from 0.9 rad per component of the rotation vector on."""
 
 LEAST_CLARITY = 1 / 16
 """Where noise leaves less, the reference path takes no more frames for it."""
@@ -85,7 +90,7 @@ def develop(q: Reals, confidence: Reals | None, reference_sigma: Reals) -> tuple
         `y`.
     """
     path = aligned(normalize(q.astype(np.float64)), confidence, np.ones(q.shape[1]))
-    return developed_about(reference_path(path, confidence, reference_sigma), path)
+    return developed_about(reference_path_of_spins(path, confidence, reference_sigma), path)
 
 
 def developed_about(reference: Reals, path: Reals) -> tuple[Reals, Reals, Reals]:
@@ -172,45 +177,49 @@ def reference_path(path: Reals, confidence: Reals | None, sigma: Reals) -> Reals
     """
     result = path.copy()
     for joint in range(path.shape[1] if len(path) > 1 else 0):
-        trust = None if confidence is None else confidence[:, joint].astype(np.float64)
-        mean = weighted_mean(path[:, joint], trust, gaussian_mask(sigma[joint]), "mirror")
-        length = norm(mean)
-        clear = length >= SHORTEST_MEAN
-        result[clear, joint] = mean[clear] / length[clear, None]
+        result[:, joint], _ = mean_path(
+            path[:, joint], trust_of(joint, confidence), gaussian_mask(sigma[joint])
+        )
     return result
 
 
-def gaussian_mask(sigma: float) -> Reals:
-    """Gaussian weights `(2·radius + 1,)` of deviation `sigma` frames, cut off at four deviations, with the sum 1."""
-    radius = int(4 * sigma + 0.5)
-    lags = np.arange(-radius, radius + 1)
-    weights = np.exp(-0.5 * (lags / sigma) ** 2)
-    return np.asarray(weights / weights.sum())
+def reference_path_of_spins(path: Reals, confidence: Reals | None, sigma: Reals) -> Reals:
+    """Make the reference path of :func:`reference_path`, for joints that may turn fast within the mask.
 
-
-def weighted_mean(columns: Reals, trust: Reals | None, mask: Reals, boundary: Boundary) -> Reals:
-    """Take means of columns `(frames, k)`, at least two frames, under a mask whose sum is 1.
-
-    With the trust `c` of the frames, `Σ_j m_j c_{t+j} x_{t+j} / Σ_j m_j c_{t+j}`; where none under the mask is trusted, the
-    column stays as it is.
+    Where an average is shorter than `LONG_MEAN`, and the joint turns steadily by more than `FAST` within a deviation of the mask,
+    the path is seen from a frame that turns along: there it is slow, and its signs and its averages are those of slow motion.
+    See :mod:`.spin`.
     """
-    radius = len(mask) // 2
-    around = extend_vectors(columns, radius, boundary)
-    if trust is None:
-        return masked(around, mask)
-    weights = extend_by_index(trust[:, None], radius, boundary)
-    total = masked(weights, mask)
-    mean = masked(weights * around, mask)
-    return np.where(total > 0, mean / np.where(total > 0, total, 1), columns)
-
-
-def masked(around: Reals, mask: Reals) -> Reals:
-    """Add up `Σ_j m_j x_{t+j}` along columns that go on by the mask's radius beyond both ends."""
-    frames = len(around) - len(mask) + 1
-    result = np.zeros((frames, around.shape[1]))
-    for j, weight in enumerate(mask):
-        result += weight * around[j : j + frames]
+    result = path.copy()
+    for joint in range(path.shape[1] if len(path) > 1 else 0):
+        own, trust, mask = path[:, joint], trust_of(joint, confidence), gaussian_mask(sigma[joint])
+        result[:, joint], length = mean_path(own, trust, mask)
+        if length.min() >= LONG_MEAN:
+            continue
+        of_world, of_body = mean_turns(own, trust, mask)
+        if max(norm(of_world).max(), norm(of_body).max()) * sigma[joint] <= FAST:
+            continue
+        left, right = conjugate(rolled(-of_world)), rolled(of_body)
+        slow = normalize(multiply(multiply(conjugate(left), own), conjugate(right)))
+        weights = None if trust is None else trust[:, None]
+        slow = aligned(slow[:, None], weights, np.ones(1))[:, 0]
+        result[:, joint] = multiply(multiply(left, mean_path(slow, trust, mask)[0]), right)
     return result
+
+
+def trust_of(joint: int, confidence: Reals | None) -> Reals | None:
+    """Return the confidence of a joint's samples, `(frames,)`."""
+    return None if confidence is None else confidence[:, joint].astype(np.float64)
+
+
+def mean_path(path: Reals, trust: Reals | None, mask: Reals) -> tuple[Reals, Reals]:
+    """Average the aligned quaternions `(frames, 4)` of a joint; return the path and how long the averages were."""
+    mean = weighted_mean(path, trust, mask, "mirror")
+    length = norm(mean)
+    clear = length >= SHORTEST_MEAN
+    result = path.copy()
+    result[clear] = mean[clear] / length[clear, None]
+    return result, length
 
 
 @dataclass(frozen=True)
@@ -264,7 +273,7 @@ def filtered(
         return normalize(q), None if translation is None else translation.copy()
     trust = None if confidence is None else confidence.astype(np.float64)
     path = aligned(normalize(q.astype(np.float64)), confidence, np.ones(joints))
-    reference = reference_path(path, confidence, reference_sigma)
+    reference = reference_path_of_spins(path, confidence, reference_sigma)
     frame, development, vectors = carried_about(reference, path)
     moved = np.empty_like(vectors)
     for joint in range(joints):

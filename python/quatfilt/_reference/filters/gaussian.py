@@ -2,7 +2,8 @@
 
 from quatfilt._reference._arrays import Reals
 from quatfilt._reference.filters.boundary import Boundary
-from quatfilt._reference.filters.development import Columns, filtered, gaussian_mask, weighted_mean
+from quatfilt._reference.filters.columns import gaussian_mask, weighted_mean
+from quatfilt._reference.filters.development import Columns, filtered
 
 
 def gaussian(

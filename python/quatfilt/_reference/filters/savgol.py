@@ -8,7 +8,7 @@ from quatfilt._reference.filters.development import (
     aligned,
     carried_about,
     filtered,
-    reference_path,
+    reference_path_of_spins,
     undevelop,
 )
 from quatfilt._reference.motion.skeleton import rotate
@@ -73,7 +73,7 @@ def savgol_derivative(
     array (frames, joints, 3), rad/s or rad/s²
     """
     path = aligned(normalize(q.astype(np.float64)), confidence, np.ones(q.shape[1]))
-    reference = reference_path(path, confidence, reference_sigma)
+    reference = reference_path_of_spins(path, confidence, reference_sigma)
     frame, development, vectors = carried_about(reference, path)
     moved = fitted_joints(development, vectors, confidence, fit, values)
     beside = rotate(conjugate(frame), moved - development)

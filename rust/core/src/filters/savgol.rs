@@ -48,7 +48,7 @@ impl Savgol {
         let results = input.each_joint(
             0..joints,
             |_| 0.0,
-            (3, true),
+            (3, true, true),
             2 * self.nanoseconds(),
             interrupt,
             |joint, mut path, spare, rows| {

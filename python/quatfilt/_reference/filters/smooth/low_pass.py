@@ -6,7 +6,7 @@ from quatfilt._reference._arrays import Reals
 from quatfilt._reference.filters.development import (
     aligned,
     carried_about,
-    reference_path,
+    reference_path_of_spins,
     undevelop,
 )
 from quatfilt._reference.filters.smooth.penalised import penalised
@@ -52,7 +52,7 @@ def low_pass(
         return normalize(q), None if translation is None else translation.copy()
     weights = np.ones((frames, joints)) if confidence is None else confidence.astype(np.float64)
     path = aligned(normalize(q.astype(np.float64)), confidence, np.ones(joints))
-    reference = reference_path(path, confidence, reference_sigma)
+    reference = reference_path_of_spins(path, confidence, reference_sigma)
     for _ in range(ROUNDS):
         frame, development, vectors = carried_about(reference, path)
         moved = np.stack([smoothed(vectors[:, j], weights[:, j], softness) for j in range(joints)], axis=1)

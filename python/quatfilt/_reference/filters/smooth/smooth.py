@@ -3,14 +3,13 @@
 import numpy as np
 
 from quatfilt._reference._arrays import Reals
+from quatfilt._reference.filters.columns import gaussian_mask, weighted_mean
 from quatfilt._reference.filters.development import (
     aligned,
     clarity,
     developed_about,
-    gaussian_mask,
     reference_path,
     undevelop,
-    weighted_mean,
 )
 from quatfilt._reference.filters.smooth.penalised import penalised_column
 from quatfilt._reference.rotations.quaternion import exp, multiply, normalize

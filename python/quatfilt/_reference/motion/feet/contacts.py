@@ -3,7 +3,7 @@
 import numpy as np
 
 from quatfilt._reference._arrays import Mask, Reals
-from quatfilt._reference.filters.development import gaussian_mask, weighted_mean
+from quatfilt._reference.filters.columns import gaussian_mask, weighted_mean
 
 LOW_PASS, LOW_PASS_NOISE = 0.05, 0.3
 """Seconds and centimetres: with the noise `ν` the path is low-passed with the deviation `0.05 ν / (ν + 0.3)` s, or noise looks like speed."""

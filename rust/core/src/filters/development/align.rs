@@ -77,22 +77,28 @@ pub(super) fn load<T: Real>(
         if let Some(mean) = mean
             && clear < CLEAR
         {
-            go_back(planes.rows_mut::<ROWS>(joint * ROWS), frames, clear, *mean);
+            let [samples @ .., trust] = planes.rows_mut::<ROWS>(joint * ROWS);
+            follow_mean(samples, Some(&*trust), clear, *mean, (0..frames).rev());
         }
     }
 }
 
-/// Turns the signs of a joint once more, from the last frame to the first.
-fn go_back(planes: [&mut [f64]; ROWS], frames: usize, clear: f64, mean: [f64; 4]) {
-    let mut mean = mean;
-    let [mut samples @ .., trust] = planes;
-    for i in (0..frames).rev() {
+/// Turns the signs of a joint, frame by frame, to the hemisphere of a running mean, and moves the mean along.
+pub(super) fn follow_mean(
+    samples: [&mut [f64]; 4],
+    trust: Option<&[f64]>,
+    clear: f64,
+    mut mean: [f64; 4],
+    frames: impl Iterator<Item = usize>,
+) {
+    let mut samples = samples;
+    for i in frames {
         let q = samples.each_ref().map(|plane| plane[i]);
         let q = if dot(mean, q) < 0.0 { q.map(|x| -x) } else { q };
         for (plane, x) in samples.iter_mut().zip(q) {
             plane[i] = x;
         }
-        let share = trust[i] * 0.5 * clear;
+        let share = trust.map_or(1.0, |trust| trust[i]) * 0.5 * clear;
         mean = std::array::from_fn(|c| mean[c] + share * (q[c] - mean[c]));
     }
 }

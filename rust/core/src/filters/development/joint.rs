@@ -1,6 +1,7 @@
 //! One joint over the whole clip, as planes.
 
 use super::super::columns::{BLOCK, Mask};
+use super::spin::{follow_spin, may_spin};
 use crate::clip::Planes;
 use crate::parallel::Interrupt;
 use crate::rotations::quaternion::{between, conjugate_one, dot, exp_one, log_short, product, rotate, unit};
@@ -10,7 +11,7 @@ use crate::{Error, Real};
 
 /// Length of an average of unit quaternions below which its direction is chance: the frames turn right round within the
 /// mask.
-const SHORTEST_MEAN: f64 = 0.1;
+pub(super) const SHORTEST_MEAN: f64 = 0.1;
 
 /// A joint and its reference path. All planes are padded to a multiple of [`BLOCK`] frames.
 #[derive(Debug)]
@@ -31,6 +32,17 @@ pub(in crate::filters) struct Joint<'a> {
     pub(in crate::filters) vectors: [&'a mut [f64]; 3],
     /// The confidence of the samples.
     pub(in crate::filters) trust: Option<&'a [f64]>,
+}
+
+/// How a joint is developed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Chart<'a> {
+    /// The mask that makes the reference path.
+    pub(super) mask: &'a Mask,
+    /// Its deviation in frames, where joints that spin are brought to rest first.
+    pub(super) spins: Option<f64>,
+    /// Whether the vectors are seen from the frame that is carried along the reference path.
+    pub(super) carried: bool,
 }
 
 /// What a filter for numbers is applied to: the vectors of a joint, or a translation.
@@ -65,7 +77,7 @@ impl<'a> Joint<'a> {
         samples: [&'a [f64]; 4],
         trust: Option<&'a [f64]>,
         frames: usize,
-        (mask, carried): (&Mask, bool),
+        Chart { mask, spins, carried }: Chart<'_>,
         (planes, spare): (&'a mut Planes<f64>, &mut Planes<f64>),
         interrupt: &Interrupt,
     ) -> Result<Self, Error> {
@@ -80,7 +92,12 @@ impl<'a> Joint<'a> {
             mean.copy_from_slice(samples);
         }
         mask.means(&mut reference, trust, (frames, Boundary::Mirror), spare, interrupt)?;
+        let spins = spins.filter(|_| may_spin(reference.each_ref().map(|plane| &**plane), frames));
         make_unit(reference.each_mut().map(|plane| &mut **plane), samples, SHORTEST_MEAN);
+        if let Some(sigma) = spins {
+            let path = reference.each_mut().map(|plane| &mut **plane);
+            follow_spin(path, (samples, trust), frames, (mask, sigma), spare, interrupt)?;
+        }
         let (frame, development) = ([one, i, j, k], [a, b, c]);
         let mut joint = Self { frames, samples, reference, frame, carried, development, vectors, trust };
         joint.roll_out();
@@ -132,7 +149,7 @@ impl<'a> Joint<'a> {
 
 multiversion! {
     /// Scales quaternions to length 1; those shorter than `shortest` become the samples.
-    fn make_unit<T: Real>(q: [&mut [T]; 4], samples: [&[T]; 4], shortest: T) {
+    pub(super) fn make_unit<T: Real>(q: [&mut [T]; 4], samples: [&[T]; 4], shortest: T) {
         let n = q[0].len();
         let samples = samples.map(|plane| &plane[..n]);
         let [w, x, y, z] = q.map(|plane| &mut plane[..n]);
@@ -151,7 +168,7 @@ multiversion! {
 
 multiversion! {
     /// Rotation vectors from each frame to the next, the shorter way.
-    fn turns<T: Real>(q: [&[T]; 4], out: [&mut [T]; 3]) {
+    pub(super) fn turns<T: Real>(q: [&[T]; 4], out: [&mut [T]; 3]) {
         let n = out[0].len();
         let here = q.map(|plane| &plane[..n]);
         let next = q.map(|plane| &plane[1..=n]);
@@ -190,7 +207,7 @@ multiversion! {
 
 /// Products of the halves of the turns up to each frame, in place: the frame of the body, carried along by parallel transport,
 /// turns half as far.
-fn carry(halves: &mut [&mut [f64]; 4], frames: usize) {
+pub(super) fn carry(halves: &mut [&mut [f64]; 4], frames: usize) {
     let [w, x, y, z] = halves.each_mut().map(|plane| &mut plane[..frames]);
     let mut here = [1.0, 0.0, 0.0, 0.0];
     w[0] = 1.0;
@@ -211,7 +228,7 @@ fn carry(halves: &mut [&mut [f64]; 4], frames: usize) {
 
 multiversion! {
     /// Vectors as they are seen from other frames, in place.
-    fn seen<T: Real>(frame: [&[T]; 4], vectors: [&mut [T]; 3]) {
+    pub(super) fn seen<T: Real>(frame: [&[T]; 4], vectors: [&mut [T]; 3]) {
         let n = vectors[0].len();
         let frame = frame.map(|plane| &plane[..n]);
         let [x, y, z] = vectors.map(|plane| &mut plane[..n]);

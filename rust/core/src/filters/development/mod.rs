@@ -22,6 +22,7 @@
 mod align;
 mod joint;
 mod rows;
+mod spin;
 
 use super::columns::{BLOCK, Mask};
 pub use super::local::Translation;
@@ -33,6 +34,7 @@ use crate::rotations::quaternion;
 use crate::window::Boundary;
 use crate::{ClipMut, ClipView, Error, Real};
 use align::GROUP;
+use joint::Chart;
 pub use joint::Columns;
 pub(super) use joint::Joint;
 pub use rows::undevelop;
@@ -68,6 +70,11 @@ pub trait Smooth: Sync {
     /// Whether the vectors are seen from the frame that is carried along: then small rotations are filtered as their vectors, up
     /// to products of three angles. The axes of a body that turns are at rest in its own frame alone.
     fn carried(&self) -> bool {
+        true
+    }
+
+    /// Whether joints that spin are brought to rest before their reference path is made.
+    fn follows_spins(&self) -> bool {
         true
     }
 
@@ -136,13 +143,13 @@ impl<T: Real> Input<'_, T> {
         self.confidence.map_or(Ok(()), |trust| check_length("confidence", samples, trust.len()))
     }
 
-    /// Develops each joint of a range, which has so much noise, in a frame that is `carried` along or in that of the body, and lets
-    /// `work` write what it makes of it: `width` numbers for each frame. The results stand one joint after the other.
+    /// Develops each joint of a range, which has so much noise, in a frame that is `carried` along or in that of the body, with an eye to `spins` or
+    /// not, and lets `work` write what it makes of it: `width` numbers for each frame. The results stand one joint after the other.
     pub(super) fn each_joint<W: Real>(
         &self,
         range: Range<usize>,
         noise: impl Fn(usize) -> f64,
-        (width, carried): (usize, bool),
+        (width, carried, spins): (usize, bool, bool),
         nanoseconds: usize,
         interrupt: &Interrupt,
         work: impl Fn(usize, Joint<'_>, &mut Planes<f64>, &mut [W]) -> Result<(), Error> + Sync + Send,
@@ -168,8 +175,10 @@ impl<T: Real> Input<'_, T> {
                 interrupt.check()?;
                 let [w, x, y, z, trust] = samples.rows_mut(i * align::ROWS);
                 let trust = self.confidence.map(|_| &*trust);
-                let (how, memory) = ((&masks[first + i], carried), (&mut *joint, &mut *spare));
-                let path = Joint::develop([w, x, y, z], trust, frames, how, memory, interrupt)?;
+                let spins = spins.then_some(self.reference_sigma[first + i]);
+                let (chart, memory) =
+                    (Chart { mask: &masks[first + i], spins, carried }, (&mut *joint, &mut *spare));
+                let path = Joint::develop([w, x, y, z], trust, frames, chart, memory, interrupt)?;
                 work(first + i, path, spare, results)?;
             }
             if let Ok(mut kept) = kept.lock() {
@@ -219,7 +228,7 @@ impl<T: Real> Input<'_, T> {
             let results = self.each_joint(
                 range.clone(),
                 |joint| filter.noise(joint),
-                (4, filter.carried()),
+                (4, filter.carried(), filter.follows_spins()),
                 filter.nanoseconds(),
                 interrupt,
                 |joint, mut path, spare, rows| {
@@ -326,7 +335,7 @@ pub fn develop<T: Real>(
     let results = input.each_joint(
         0..joints,
         |_| 0.0,
-        (WIDTH, false),
+        (WIDTH, false, true),
         0,
         interrupt,
         |_, path, _, rows: &mut [f64]| {

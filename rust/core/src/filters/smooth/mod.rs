@@ -125,6 +125,11 @@ impl Smooth for Smoother {
         false
     }
 
+    /// About a reference path that is chance, its rounds find a spin; and slower turns than a spin are fast beside its mask.
+    fn follows_spins(&self) -> bool {
+        false
+    }
+
     fn check(&self, frames: usize, joints: usize) -> Result<(), Error> {
         if let Some(candidates) = &self.candidates {
             check_length("frames", candidates.frames(), frames)?;
