@@ -20,7 +20,7 @@ REACH = 3 * RADIUS
 AXIS = np.array([2.0, -1, 2]) / 3
 
 
-slow = examples(12)
+slow = examples(6)
 """The reference looks at each run by itself."""
 
 

@@ -7,6 +7,7 @@ import tolerances
 from drawn import dtypes, seeds
 from hypothesis import given
 from hypothesis import strategies as st
+from plugins.properties import examples
 from quatfilt.filters.wavelet import with_translation as wavelet_with_translation
 from scipy import signal
 
@@ -62,6 +63,9 @@ frame, every fourth, and so on: it sees when a clip begins."""
 
 every_filter = pytest.mark.parametrize("name", FILTERS)
 
+few = examples(12)
+"""Each is a whole clip; the reference takes its time."""
+
 
 def sample(seed, frames=60, joints=3, sigma=0.1):
     rng = np.random.default_rng(seed)
@@ -69,6 +73,7 @@ def sample(seed, frames=60, joints=3, sigma=0.1):
 
 
 @every_filter
+@few
 @given(seed=seeds, weighted=st.booleans())
 def test_constant_rotations_on_either_side_go_through(backend, name, seed, weighted):
     q, rng = sample(seed)
@@ -80,6 +85,7 @@ def test_constant_rotations_on_either_side_go_through(backend, name, seed, weigh
 
 
 @pytest.mark.parametrize("name", REACH)
+@few
 @given(seed=seeds, weighted=st.booleans())
 def test_inverse_rotations_give_the_inverse(backend, name, seed, weighted):
     """It does not matter whether the body is seen from the world or the world from the body. The principal axes of a wavelet's
@@ -91,6 +97,7 @@ def test_inverse_rotations_give_the_inverse(backend, name, seed, weighted):
 
 
 @every_filter
+@few
 @given(seed=seeds, dtype=dtypes)
 def test_signs_do_not_matter(backend, name, seed, dtype):
     q, rng = sample(seed)
@@ -102,6 +109,7 @@ def test_signs_do_not_matter(backend, name, seed, dtype):
 
 
 @every_filter
+@few
 @given(seed=seeds, dtype=dtypes)
 def test_output_is_unit_continuous_and_starts_in_the_hemisphere_of_the_input(backend, name, seed, dtype):
     q, rng = sample(seed)
@@ -120,6 +128,7 @@ def test_constant_clips_stay(backend, name):
 
 
 @pytest.mark.parametrize("name", REACH)
+@few
 @given(seed=seeds, shift=st.integers(1, 9))
 def test_time_does_not_matter_far_from_the_ends(backend, name, seed, shift):
     q, _ = sample(seed, 250)
@@ -130,6 +139,7 @@ def test_time_does_not_matter_far_from_the_ends(backend, name, seed, shift):
 
 
 @pytest.mark.parametrize("name", SYMMETRIC)
+@few
 @given(seed=seeds)
 def test_a_clip_that_runs_backwards_gives_the_same(backend, name, seed):
     q, _ = sample(seed)
@@ -148,6 +158,7 @@ def test_however_far_a_joint_turns(backend, name):
 
 
 @every_filter
+@few
 @given(seed=seeds)
 def test_what_is_not_trusted_does_not_matter(backend, name, seed):
     q, rng = sample(seed)
@@ -213,6 +224,7 @@ def test_development_about_one_axis_unrolls_the_angle(backend):
     np.testing.assert_allclose(vectors[:, 0], unrolled[:, None] * AXIS, rtol=0, atol=tolerances.FLOAT64)
 
 
+@few
 @given(seed=seeds, dtype=dtypes)
 def test_development_and_back(backend, seed, dtype):
     q, rng = sample(seed)

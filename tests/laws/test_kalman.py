@@ -7,11 +7,15 @@ import tolerances
 from drawn import dtypes, seeds
 from hypothesis import given
 from hypothesis import strategies as st
+from plugins.properties import examples
 
 WHOLE = -1
 SIGMA = 0.05
 
 lookaheads = pytest.mark.parametrize("lookahead", [WHOLE, 0, 4])
+
+few = examples(12)
+"""Each is a whole clip; the reference takes its time."""
 
 
 def sample(seed, frames=23, joints=3):
@@ -33,6 +37,7 @@ def automatic(backend, q, lookahead=WHOLE):
 
 
 @lookaheads
+@few
 @given(seed=seeds)
 def test_constant_rotations_on_either_side_go_through(backend, lookahead, seed):
     q, rng = sample(seed)
@@ -46,6 +51,7 @@ def test_constant_rotations_on_either_side_go_through(backend, lookahead, seed):
 
 
 @lookaheads
+@few
 @given(seed=seeds)
 def test_whether_rotations_lead_from_the_parent_or_to_it_does_not_matter(backend, lookahead, seed):
     """The velocity of the one is that of the other as seen from the parent: transport knows of no side."""
@@ -55,6 +61,7 @@ def test_whether_rotations_lead_from_the_parent_or_to_it_does_not_matter(backend
 
 
 @lookaheads
+@few
 @given(seed=seeds, dtype=dtypes)
 def test_signs_do_not_matter(backend, lookahead, seed, dtype):
     q, rng = sample(seed)
@@ -66,6 +73,7 @@ def test_signs_do_not_matter(backend, lookahead, seed, dtype):
 
 
 @lookaheads
+@few
 @given(seed=seeds, dtype=dtypes)
 def test_output_is_unit_continuous_and_starts_in_the_hemisphere_of_the_input(backend, lookahead, seed, dtype):
     q, rng = sample(seed)
@@ -200,6 +208,7 @@ def test_confidence_of_one_is_none_given(backend, lookahead):
 
 
 @lookaheads
+@few
 @given(seed=seeds)
 def test_samples_without_confidence_do_not_matter(backend, lookahead, seed):
     q, rng = sample(seed)
@@ -210,6 +219,7 @@ def test_samples_without_confidence_do_not_matter(backend, lookahead, seed):
     np.testing.assert_array_equal(result, changed * sides)
 
 
+@few
 @given(seed=seeds, share=st.sampled_from([0.01, 0.25]))
 def test_confidence_divides_the_variance(backend, seed, share):
     q, _ = sample(seed)
@@ -271,6 +281,7 @@ def test_a_forward_filter_leaves_a_forecast_that_has_become_uncertain(backend):
 # ---- the automatic process noise
 
 
+@few
 @given(seed=seeds, scale=st.sampled_from([0.5, 3.0]))
 def test_what_matters_is_the_ratio_of_the_noises(backend, seed, scale):
     q, _ = sample(seed, 60)

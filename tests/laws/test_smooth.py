@@ -8,6 +8,7 @@ import tolerances
 from drawn import dtypes, seeds
 from hypothesis import given
 from hypothesis import strategies as st
+from plugins.properties import examples
 from quatfilt.filters.smooth import with_translation
 
 AXIS = np.array([1.0, 2, 2]) / 3
@@ -30,6 +31,9 @@ SMOOTHERS = {"alone": alone, "body": body}
 
 every_smoother = pytest.mark.parametrize("name", SMOOTHERS)
 
+few = examples(12)
+"""Each is a whole clip; the reference takes its time."""
+
 
 def sample(seed, frames=60, joints=3, sigma=NOISE):
     rng = np.random.default_rng(seed)
@@ -37,6 +41,7 @@ def sample(seed, frames=60, joints=3, sigma=NOISE):
 
 
 @every_smoother
+@few
 @given(seed=seeds, weighted=st.booleans())
 def test_constant_rotations_on_either_side_go_through(backend, name, seed, weighted):
     """Of the world, and of the body of each joint."""
@@ -49,6 +54,7 @@ def test_constant_rotations_on_either_side_go_through(backend, name, seed, weigh
 
 
 @every_smoother
+@few
 @given(seed=seeds, dtype=dtypes)
 def test_signs_do_not_matter(backend, name, seed, dtype):
     q, rng = sample(seed)
@@ -60,6 +66,7 @@ def test_signs_do_not_matter(backend, name, seed, dtype):
 
 
 @every_smoother
+@few
 @given(seed=seeds, dtype=dtypes, frames=st.integers(0, 40))
 def test_output_is_unit_continuous_and_starts_in_the_hemisphere_of_the_input(
     backend, name, seed, dtype, frames
@@ -84,6 +91,7 @@ def test_constant_clips_stay(backend, name, frames):
 
 
 @every_smoother
+@few
 @given(seed=seeds)
 def test_joints_in_another_order_give_the_same(backend, name, seed):
     q, rng = sample(seed, 120, 4)
@@ -97,6 +105,7 @@ def test_joints_in_another_order_give_the_same(backend, name, seed):
 
 @every_smoother
 @pytest.mark.parametrize("frames", [4, 64, 256])
+@few
 @given(seed=seeds)
 def test_a_clip_that_runs_backwards_gives_the_same(backend, name, frames, seed):
     """Where one block holds all of it; of more blocks, the last one begins where it can."""
@@ -137,6 +146,7 @@ def test_joints_that_swing_alike_steady_each_other(backend):
 
 
 @every_smoother
+@few
 @given(seed=seeds)
 def test_joints_without_noise_stay(backend, name, seed):
     q, rng = sample(seed)
@@ -150,6 +160,7 @@ def test_joints_without_noise_stay(backend, name, seed):
     assert clips.angles(result, q)[:, [0, 2]].max() > 0.05
 
 
+@few
 @given(seed=seeds)
 def test_what_the_body_does_not_trust_does_not_matter(backend, seed):
     q, rng = sample(seed)
@@ -211,6 +222,7 @@ def test_the_least_strengths_hardly_change_anything(backend):
         assert clips.angles(qf.smooth(q, strength=strength), q).max() < 1e-3 * NOISE
 
 
+@few
 @given(seed=seeds, dtype=dtypes)
 def test_missing_samples_do_not_spread(backend, seed, dtype):
     assert backend is not None
@@ -238,6 +250,7 @@ def test_sides_of_longer_gaps_have_the_noise_in_common_and_nothing_else(backend)
         assert clips.angles(result[side], alone).max() < tolerances.PRINCIPAL_AXES
 
 
+@few
 @given(seed=seeds)
 def test_what_is_not_trusted_does_not_matter(backend, seed):
     """Whatever it is: neither its rotation nor its place, nor for the estimate of the noise."""

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use quatfilt_core::Real;
 use quatfilt_core::rotations::quaternion::{
-    angle_between, conjugate_one, dot, exp_one, log_one, log_short, product, unit,
+    angle_between, between, conjugate_one, dot, exp_one, log_one, log_short, product, unit,
 };
 
 /// How many roundings a law may cost, in units of the rounding of 1.
@@ -53,6 +53,11 @@ macro_rules! laws {
 
             proptest! {
                 #![proptest_config(cases())]
+
+                #[test]
+                fn nothing_lies_between_equal_rotations(q in quaternion::<$T>()) {
+                    prop_assert_eq!(log_short(between(q, q)), [0.0; 3]);
+                }
 
                 #[test]
                 fn exp_undoes_log(q in quaternion::<$T>()) {

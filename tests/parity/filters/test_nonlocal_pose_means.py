@@ -11,6 +11,7 @@ from drawn import same_samples, seeds
 from hypothesis import given
 from hypothesis import strategies as st
 from layouts import LAYOUTS
+from plugins.properties import examples
 from quatfilt import _core, _reference
 from quatfilt._reference.filters.nonlocal_pose_means.candidates import (
     Comparison,
@@ -230,6 +231,18 @@ def test_missing_samples_and_confidence(q, seed):
     with_both(q, confidence=confidence, bandwidth=0.1, lookahead=2)
 
 
+@pytest.mark.parametrize("dtype", DTYPES)
+@pytest.mark.parametrize("boundary", ["nearest", "mirror"])
+def test_equal_patches_without_noise(boundary, dtype):
+    """A frame without confidence is averaged over the equal patches around it, however far below a rounding the bandwidth is."""
+    rng = np.random.default_rng(13)
+    q = noisy(rng, 3, 200).astype(dtype)
+    confidence = np.ones(q.shape[:2])
+    confidence[1] = 0
+    agree(q, confidence=confidence, bandwidth=1e-9, chart="local", weights="joint", boundary=boundary)
+
+
+@examples(25)
 @given(
     seed=seeds,
     dtype=st.sampled_from(DTYPES),

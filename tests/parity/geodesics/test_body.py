@@ -52,10 +52,10 @@ def agree(q, objective, components=3):
     assert q.tobytes() == before, "the input was written"
 
 
-@examples(15)
+@examples(12)
 @given(
     seed=seeds,
-    frames=st.sampled_from([40, 63, 64, 65, 300]),
+    frames=st.sampled_from([40, 63, 64, 65, 130]),
     joints=st.sampled_from([1, 2, 5]),
     share=st.sampled_from([0.0, 0.3]),
     dtype=dtypes,

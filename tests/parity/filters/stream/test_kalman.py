@@ -45,12 +45,12 @@ def agree(q, confidence=None, **options):
 
 @given(
     seed=seeds,
-    frames=st.integers(2, 50),
+    frames=st.integers(2, 25),
     joints=st.sampled_from([1, 2, 7, 8, 9, 17]),
     dtype=drawn.dtypes,
     process=st.sampled_from([0.0, 1e-3, 0.1, 3.0]),
     measurement=st.sampled_from([1e-3, 0.05, 1.0]),
-    lookahead=st.sampled_from([0, 1, 5, 60]),
+    lookahead=st.sampled_from([0, 1, 5, 30]),
 )
 def test_any_options(seed, frames, joints, dtype, process, measurement, lookahead):
     rng = np.random.default_rng(seed)
@@ -70,15 +70,15 @@ def test_many_frames(lookahead, dtype):
     assert clips.angles(result, q).max() > 0.01
 
 
-@pytest.mark.parametrize("lookahead", [0, 3, 60])
+@pytest.mark.parametrize("lookahead", [0, 3, 30])
 @given(seed=seeds)
 def test_confidences(lookahead, seed):
     rng = np.random.default_rng(seed)
-    agree(noisy(rng, 40, 3), clips.confidences(rng, 40, 3), lookahead=lookahead)
+    agree(noisy(rng, 25, 3), clips.confidences(rng, 25, 3), lookahead=lookahead)
 
 
-@pytest.mark.parametrize("lookahead", [0, 3, 60])
-@given(q=drawn.spoilt_clips(lengths=st.integers(2, 60), joints=st.sampled_from([1, 3, 9])))
+@pytest.mark.parametrize("lookahead", [0, 3, 30])
+@given(q=drawn.spoilt_clips(lengths=st.integers(2, 25), joints=st.sampled_from([1, 3, 9])))
 def test_missing_samples_are_those_of_the_clip(q, lookahead):
     """Also for the filter of the clip, whose gaps are filled: what they are filled with does not matter."""
     options = {"process_noise": 0.01, "measurement_noise": 0.05, "lookahead": lookahead}

@@ -29,10 +29,18 @@ pub fn conjugate_one<T: Real>(q: [T; 4]) -> [T; 4] {
 }
 
 /// `a⁻¹·b` of unit quaternions.
+///
+/// Terms that cancel between equal ones stand side by side: their way is 0 to the last bit, however small the unit it is
+/// measured in.
 #[inline(always)]
 #[must_use]
 pub fn between<T: Real>(a: [T; 4], b: [T; 4]) -> [T; 4] {
-    product(conjugate_one(a), b)
+    [
+        dot(a, b),
+        (a[0] * b[1] - a[1] * b[0]) + (a[3] * b[2] - a[2] * b[3]),
+        (a[0] * b[2] - a[2] * b[0]) + (a[1] * b[3] - a[3] * b[1]),
+        (a[0] * b[3] - a[3] * b[0]) + (a[2] * b[1] - a[1] * b[2]),
+    ]
 }
 
 /// Inner product in R⁴.
