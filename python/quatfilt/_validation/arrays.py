@@ -38,7 +38,7 @@ def floats(value: Any, name: str) -> Array:
 def _unmasked(array: "np.ma.MaskedArray[Any, Any]") -> Any:
     """Return a masked array as an array of floats, with NaN for what is masked."""
     if array.dtype.kind in _WIDEST_INTEGERS:
-        return array.astype(np.float64).filled(np.nan)
+        return np.ma.filled(array.astype(np.float64), np.nan)
     return array.filled(np.nan) if array.dtype.kind == "f" else array.data
 
 
