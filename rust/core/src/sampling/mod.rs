@@ -13,7 +13,6 @@ use crate::noise::repeats::find_repeats;
 use crate::parallel::Interrupt;
 use crate::rotations::quaternion::{between, is_missing, log_short, unit};
 use crate::{ClipView, Error, Real};
-use std::cmp::Ordering;
 
 /// Share of the moving joints that must equal the frame before, bit for bit, for the frame to be a repeat.
 const REPEATS: f64 = 0.9;
@@ -141,17 +140,13 @@ fn difference(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|c| a[c] - b[c])
 }
 
-fn order(a: &f64, b: &f64) -> Ordering {
-    a.total_cmp(b)
-}
-
 /// The value below which a part of the values lies, one of them; 0 without any.
 fn quantile(values: &mut [f64], part: f64) -> f64 {
     if values.is_empty() {
         return 0.0;
     }
     let index = (part * (values.len() - 1) as f64).to_count();
-    *values.select_nth_unstable_by(index, order).1
+    *values.select_nth_unstable_by(index, f64::total_cmp).1
 }
 
 /// The lower median; 0 without any.
@@ -160,5 +155,5 @@ fn middle(values: &mut [f64]) -> f64 {
         return 0.0;
     }
     let index = (values.len() - 1) / 2;
-    *values.select_nth_unstable_by(index, order).1
+    *values.select_nth_unstable_by(index, f64::total_cmp).1
 }

@@ -61,7 +61,7 @@ pub fn knots<T: Real>(q: Series<'_, T>, times: &[f64], out: &mut [T]) -> Result<
     let frames = q.values.len().checked_div(row).unwrap_or_default();
     for (&time, out) in times.iter().zip(out.chunks_mut(row.max(1))) {
         let whole = time.to_count();
-        if whole >= frames || !(time >= 0.0) {
+        if whole >= frames || time.is_nan() || time < 0.0 {
             return Err(Error::Parameter { name: "times", expected: "times of frames" });
         }
         let (part, before) = (time - whole as f64, whole.saturating_sub(1));
@@ -180,7 +180,7 @@ fn column<T: Real>(
     for (result, &time) in result.iter_mut().zip(new_times) {
         let left = interval(times, time);
         let right = (left + 1).min(times.len() - 1);
-        let between_samples = times[left] < time || times[left] > time;
+        let between_samples = (times[left] - time).abs() > 0.0;
         if samples[left].is_none() || between_samples && samples[right].is_none() {
             continue;
         }
@@ -305,21 +305,21 @@ impl Curve<'_> {
 /// Values of the smoothing spline at its knots.
 fn smoothed(values: &[Vector], times: &[f64], stiffness: f64) -> Vec<Vector> {
     let n = values.len();
-    if n < 3 || !(stiffness > 0.0) {
+    if n < 3 || stiffness <= 0.0 {
         return values.to_vec();
     }
     let h = spacing(times);
     let weight = |i: usize| {
         let before = if i > 0 { h[i - 1] } else { 0.0 };
-        (before + if i < n - 1 { h[i] } else { 0.0 }) / 2.0
+        0.5 * (before + if i < n - 1 { h[i] } else { 0.0 })
     };
     // Column i of Q: second divided differences at the knots i, i + 1, i + 2.
     let q = |i: usize| [1.0 / h[i], -1.0 / h[i] - 1.0 / h[i + 1], 1.0 / h[i + 1]];
     let mut bands = curvature_bands(&h);
-    for c in 0..n - 2 {
-        for k in 0..3.min(n - 2 - c) {
+    for (c, column) in bands.iter_mut().enumerate() {
+        for (k, entry) in column.iter_mut().enumerate().take(n - 2 - c) {
             let shared: f64 = (0..3 - k).map(|i| q(c)[i + k] * q(c + k)[i] / weight(c + k + i)).sum();
-            bands[c][k] += stiffness * shared;
+            *entry += stiffness * shared;
         }
     }
     let curvature = solve(bands, second_differences(values, &h));
