@@ -46,6 +46,7 @@ CALLS = {
 @pytest.mark.skipif(
     sys.platform == "win32", reason="not on this platform: there is no SIGINT for one process"
 )
+@pytest.mark.usefixtures("ctrl_c")
 @pytest.mark.parametrize("name", CALLS)
 def test_a_long_call_ends_at_ctrl_c(name):
     frames, joints, call = CALLS[name]

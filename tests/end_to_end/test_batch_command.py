@@ -187,6 +187,35 @@ def test_bad_input_is_one_line_and_nothing_is_written(takes, tmp_path, words, me
 
 
 @pytest.mark.skipif(os.name == "nt", reason="not on this platform: signals")
+def test_a_batch_in_the_background_does_not_hear_ctrl_c(takes, tmp_path):
+    """As a shell starts it with `&`: Ctrl-C, which all processes of the terminal get, is meant for others."""
+    out, pipes = tmp_path / "out", [tmp_path / f"{number}.bvh" for number in range(2)]
+    for pipe in pipes:
+        os.mkfifo(pipe)
+    command = [*COMMAND, "batch", *map(str, pipes), "-o", str(out), "--workers", "2"]
+    with subprocess.Popen(
+        ["sh", "-c", "trap '' INT; exec \"$@\"", "sh", *command],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        try:
+            writers = [opened(pipe, process) for pipe in pipes]
+            os.killpg(process.pid, signal.SIGINT)
+            for pipe, writer in zip(pipes, writers, strict=True):
+                pipe.write_bytes((takes / "one.bvh").read_bytes())
+                os.close(writer)
+            process.communicate(timeout=PATIENCE)
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+    assert process.returncode == 0
+    assert set(tree(out)) == {"0.bvh", "1.bvh", "quatfilt-batch.jsonl"}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="not on this platform: signals")
+@pytest.mark.usefixtures("ctrl_c")
 @pytest.mark.parametrize("workers", [1, 2])
 @pytest.mark.parametrize("everybody", [True, False])
 def test_an_interrupted_batch_goes_on_where_it_was(takes, tmp_path, workers, everybody):

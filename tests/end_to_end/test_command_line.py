@@ -339,6 +339,7 @@ def test_an_output_that_cannot_say_degrees_does_not_fail(folder):
 
 
 @pytest.mark.skipif(os.name == "nt", reason="not on this platform: signals")
+@pytest.mark.usefixtures("ctrl_c")
 def test_an_interrupted_process_says_so(tmp_path):
     # The command is at work once it has opened the pipe, and then waits for what never comes.
     pipe, output = tmp_path / "pipe.bvh", tmp_path / "out.bvh"

@@ -256,6 +256,7 @@ def test_what_a_killed_build_with_a_graph_left_is_removed_by_the_next(takes, tmp
     assert names(tmp_path) == ["db"]
 
 
+@pytest.mark.usefixtures("ctrl_c")
 @pytest.mark.parametrize("moment", ["some of the clips", "all rotations"])
 def test_an_interrupted_build_cleans_up(many, tmp_path, moment):
     out = tmp_path / "out" / "db"

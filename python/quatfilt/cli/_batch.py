@@ -129,7 +129,8 @@ _listener = _Listener()
 
 def _begin(threads: int) -> None:
     """Prepare a process of the pool."""
-    signal.signal(signal.SIGINT, _listener)
+    if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:  # it is in what a shell starts in the background
+        signal.signal(signal.SIGINT, _listener)
     if sys.platform != "win32":
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     _backend.set_num_threads(threads)
