@@ -87,6 +87,10 @@ def denoise(
 
     Notes
     -----
+    "auto" and presets first look at the source: of held, repeated and interpolated frames only measurements are cleaned, at the
+    source's rate, and a spline leads back to all frames; frozen stretches stay. Jitter of estimates from video is filtered by a low pass.
+    ``fps`` tells what that needs.
+
     A chain is its steps one after the other, each with ``gaps="keep"`` but for the last: missing samples are filled anew
     by each step from neighbours that are the cleaner, and no step trusts what another one filled in.
 

@@ -8,7 +8,7 @@ from quatfilt import sampling
 from quatfilt.cli import _options, _output
 from quatfilt.motion.defects import find_defects
 from quatfilt.motion.motion import Motion
-from quatfilt.noise.noise import noise_level
+from quatfilt.noise.model import noise_model
 
 _SHOWN = 10
 
@@ -50,6 +50,8 @@ def info(
         _output.counted(report["frozen_frames"], "frozen frame"),
     )
     _output.say(f"  estimated noise {report['noise_degrees']:.2g}° (root mean square over the joints)")
+    for name, value in report["noise_model"].items():
+        _output.say(f"  noise, {name}: {value}")
     _output.say(f"  {', '.join(counts)}")
     if report["source"]["says"]:
         _output.say(f"  {report['source']['says']}")
@@ -88,7 +90,8 @@ def info(
 def describe(motion: Motion) -> dict[str, Any]:
     """Return what `info` says about a motion."""
     defects = find_defects(motion.rotations, fps=motion.fps)
-    noise = np.degrees(noise_level(motion.rotations).astype(np.float64))
+    model = noise_model(motion)
+    noise = np.degrees(model.joint_level)
     source = sampling.recognised(motion.rotations, motion.fps)
     spikes, jumps = defects.spikes.sum(axis=0), defects.jumps.sum(axis=0)
     return {
@@ -98,6 +101,7 @@ def describe(motion: Motion) -> dict[str, Any]:
         "unit_centimetres": motion.skeleton.centimetres_per_unit,
         "notes": list(motion.notes),
         "noise_degrees": float(np.sqrt(np.mean(noise**2))) if len(noise) else 0.0,
+        "noise_model": dict(model.describe()),
         "missing_samples": int(defects.missing.sum()),
         "missing_positions": int(np.count_nonzero(np.isnan(motion.translation).any(axis=1))),
         "spikes": int(spikes.sum()),

@@ -11,9 +11,10 @@ import numpy as np
 from quatfilt._typing import Array
 from quatfilt.evaluation._markdown import cell, table
 from quatfilt.evaluation._plot import DENOISED, NOISY, figure, quiet
-from quatfilt.evaluation.channels import vectors
 from quatfilt.evaluation.trackers import CAP, CLEAR, EVERY, SLOW, Take
-from quatfilt.rotations.quaternion import geodesic_distance
+from quatfilt.rotations.continuity import continuous
+from quatfilt.rotations.mean import mean
+from quatfilt.rotations.quaternion import conjugate, geodesic_distance, log, multiply
 
 STEM = "trackers"
 
@@ -177,13 +178,18 @@ def roughest(q: Array) -> tuple[int, int]:
 
 
 def curves(take: Take, joint: int) -> tuple[Array, Array]:
-    """Return the rotation vectors of a joint before and after in degrees, both about the same mean."""
-    both = np.concatenate([take.before.rotations[:, [joint]], take.after.rotations[:, [joint]]], axis=1)
-    # Side by side the two paths have means of their own; one after the other they share one.
-    joined = np.concatenate([both[:, :1], both[::-1, 1:]])
-    values = np.degrees(vectors(joined).values)
-    frames = len(both)
-    return values[:frames], values[frames:][::-1]
+    """Return the rotation vectors of a joint before and after in degrees, about the recording's mean.
+
+    The signs of the result are those of the recording, so that both unroll alike where the joint jumps by half a turn.
+    """
+    before, after = (motion.rotations[:, [joint]] for motion in (take.before, take.after))
+    base = conjugate(mean(before)[None])
+    path = multiply(base, continuous(before))
+    if path[..., 0].sum() < 0:
+        path = -path
+    beside = multiply(base, after)
+    beside = beside * np.where(np.sum(path * beside, axis=-1, keepdims=True) < 0, -1.0, 1.0)
+    return np.degrees(2 * log(path))[:, 0], np.degrees(2 * log(beside))[:, 0]
 
 
 __all__ = ["STEM", "Report", "as_dict", "draw", "markdown"]

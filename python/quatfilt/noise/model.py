@@ -16,7 +16,7 @@ from quatfilt.noise._measure import measure
 class NoiseModel:
     """Noise that was measured on a clip.
 
-    Attributes
+    Parameters
     ----------
     level : ndarray, shape (joints, 3), radians
         Deviation of the noise along each of its axes, over the whole clip; increasing.

@@ -32,8 +32,8 @@ FEWEST_JOINTS = 3
 CLEAR = 0.8
 """Share of the judged frames that must be knots or inside, and of the knots that must be at most two frames long."""
 
-MOST_KNOTS = 0.5
-"""Share of the judged frames that may be knots."""
+MOST_KNOTS = 0.65
+"""Share of the judged frames that may be knots: measurements 10/3 frames apart bend two of them each."""
 
 STRAIGHT = 0.12
 """Median bend inside, over the median bend at knots, that is straight."""

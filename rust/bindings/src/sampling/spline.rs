@@ -13,11 +13,7 @@ const NANOSECONDS: usize = 300;
 /// Rotations `(n, joints, 4)`, or positions `(n, points, 3)`, at times `(n,)` in frames.
 #[pyfunction]
 #[pyo3(signature = (q, times, /))]
-pub(crate) fn knots(
-    py: Python<'_>,
-    q: &Bound<'_, PyAny>,
-    times: &Bound<'_, PyAny>,
-) -> PyResult<Py<PyAny>> {
+pub(crate) fn knots(py: Python<'_>, q: &Bound<'_, PyAny>, times: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
     let times = input::<f64>("times", times)?;
     let times = elements("times", &times)?;
     by_dtype!(q, T => {

@@ -20,7 +20,6 @@ fn typed<T: Real + Element>(py: Python<'_>, q: &Bound<'_, PyAny>, fps: f64) -> P
     let q = input::<T>("q", q)?;
     let q = clip("q", &q)?;
     let nanoseconds = q.frames() * q.joints() * NANOSECONDS;
-    let found =
-        run_interruptible(py, nanoseconds, |interrupt| core::tracker_noise(q, fps, interrupt))?;
+    let found = run_interruptible(py, nanoseconds, |interrupt| core::tracker_noise(q, fps, interrupt))?;
     Ok(found.to_vec().into_pyarray(py).unbind())
 }

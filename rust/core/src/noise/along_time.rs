@@ -21,8 +21,8 @@ const REACH: usize = 10;
 /// Frames: four windows. Shorter clips have no quiet part to compare with.
 const SHORTEST: usize = 84;
 
-/// Quantile over time of a joint's local variance that stands for its quiet part.
-const QUIET: f64 = 0.25;
+/// One over the quantile over time of a joint's local variance that stands for its quiet part.
+const QUARTERS: usize = 4;
 
 /// Share of the local speed, in frames, that motion may leave in the differences: so much is no noise.
 const OF_MOTION: f64 = 0.7;
@@ -123,10 +123,10 @@ fn excess<T: Real>(steps: [&[T]; 3]) -> Vec<f64> {
 fn lower_quartile(values: &[f64]) -> f64 {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|x| x.is_finite()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
-    let rank = QUIET * sorted.len().saturating_sub(1) as f64;
-    let (below, part) = (rank.floor(), rank.fract());
-    let low = sorted.get(below as usize).copied().unwrap_or(f64::NAN);
-    let high = sorted.get(below as usize + 1).copied().unwrap_or(low);
+    let rank = sorted.len().saturating_sub(1);
+    let (below, part) = (rank / QUARTERS, (rank % QUARTERS) as f64 / QUARTERS as f64);
+    let low = sorted.get(below).copied().unwrap_or(f64::NAN);
+    let high = sorted.get(below + 1).copied().unwrap_or(low);
     low + part * (high - low)
 }
 

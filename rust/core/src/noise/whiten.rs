@@ -59,25 +59,26 @@ impl Shape<'_> {
         interrupt: &Interrupt,
     ) -> Result<(), Error> {
         let joints = self.joints();
+        let Whitened { reference: path, development: flat, vectors: white } = out;
         check_length("axes", joints * 9, self.axes.len())?;
         check_length("development", vectors.len(), development.len())?;
         check_length("reference", vectors.len() / 3 * 4, reference.len())?;
-        check_length("out.reference", reference.len(), out.reference.len())?;
-        check_length("out.development", vectors.len(), out.development.len())?;
-        check_length("out.vectors", vectors.len(), out.vectors.len())?;
+        check_length("out.reference", reference.len(), path.len())?;
+        check_length("out.development", vectors.len(), flat.len())?;
+        check_length("out.vectors", vectors.len(), white.len())?;
         let weights = self.weights(|s| 1.0 / s);
-        self.innovations(&weights, development, out.development, interrupt)?;
-        self.innovations(&weights, vectors, out.vectors, interrupt)?;
+        self.innovations(&weights, development, flat, interrupt)?;
+        self.innovations(&weights, vectors, white, interrupt)?;
         let row = joints * 4;
         for i in 0..reference.len() / 4 {
             let here = if i < joints {
                 of_row(&reference[i * 4..])
             } else {
-                let (now, before) = (&out.development[i * 3..], &out.development[(i - joints) * 3..]);
+                let (now, before) = (&flat[i * 3..], &flat[(i - joints) * 3..]);
                 let half = std::array::from_fn(|c| (now[c] - before[c]) / 2.0);
-                unit(product(of_row(&out.reference[i * 4 - row..]), exp_one(half)))
+                unit(product(of_row(&path[i * 4 - row..]), exp_one(half)))
             };
-            out.reference[i * 4..i * 4 + 4].copy_from_slice(&here);
+            path[i * 4..i * 4 + 4].copy_from_slice(&here);
         }
         Ok(())
     }

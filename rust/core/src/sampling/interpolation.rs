@@ -37,7 +37,7 @@ const FEWEST_JOINTS: usize = 3;
 const CLEAR: f64 = 0.8;
 
 /// Share of the judged frames that may be knots.
-const MOST_KNOTS: f64 = 0.5;
+const MOST_KNOTS: f64 = 0.65;
 
 /// Median bend inside, over the median bend at knots, that is straight.
 const STRAIGHT: f64 = 0.12;
@@ -90,8 +90,7 @@ fn interpolated<T: Real>(q: ClipView<'_, T>, interrupt: &Interrupt) -> Result<bo
     let joints = bends(q, interrupt)?;
     let (inside, knots) = judged(&joints);
     let count = |frames: &[bool]| frames.iter().filter(|&&is| is).count() as f64;
-    let sure =
-        (0..knots.len()).filter(|&t| counted(&joints, t) >= FEWEST_JOINTS).count() as f64;
+    let sure = (0..knots.len()).filter(|&t| counted(&joints, t) >= FEWEST_JOINTS).count() as f64;
     let clusters = runs(&knots);
     let short = clusters.iter().filter(|(start, end)| end - start <= 2).count() as f64;
     if clusters.len() <= FEWEST_KNOTS || count(&inside) == 0.0 {

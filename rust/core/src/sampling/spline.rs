@@ -169,7 +169,12 @@ fn column<T: Real>(
         .windows(2)
         .map(|piece| {
             let (frame, development) = carried(&smooth[piece[0]..piece[1]]);
-            Piece { start: piece[0], frame, curvature: curvature(&development, &known[piece[0]..piece[1]]), development }
+            Piece {
+                start: piece[0],
+                frame,
+                curvature: curvature(&development, &known[piece[0]..piece[1]]),
+                development,
+            }
         })
         .collect();
     for (result, &time) in result.iter_mut().zip(new_times) {

@@ -142,13 +142,9 @@ impl Window {
         if !(speed.is_finite() && speed > FASTEST) {
             return None;
         }
-        let mean: [f64; 3] =
-            std::array::from_fn(|c| velocity.iter().map(|v| v[c]).sum::<f64>() / count);
-        let values: Vec<[f64; 3]> = velocity
-            .iter()
-            .zip(&self.hann)
-            .map(|(&v, hann)| difference(v, mean).map(|x| x * hann))
-            .collect();
+        let mean: [f64; 3] = std::array::from_fn(|c| velocity.iter().map(|v| v[c]).sum::<f64>() / count);
+        let values: Vec<[f64; 3]> =
+            velocity.iter().zip(&self.hann).map(|(&v, hann)| difference(v, mean).map(|x| x * hann)).collect();
         let [low, medium, high, top] = self.bands.each_ref().map(|waves| power(&values, waves));
         Some([high / low, high / medium, top / high])
     }
