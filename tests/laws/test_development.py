@@ -215,6 +215,56 @@ def test_one_wild_sample_does_not_turn_the_signs_of_the_rest(backend):
         assert clips.angles(reference[60:], reference[60:61] + 0 * reference[60:]).max() < 0.2
 
 
+def spin(speed, axis, *, frames=120, noise=0.0):
+    """A joint that turns steadily by `speed` radians per frame, one at rest beside it, and both without noise."""
+    rng = np.random.default_rng(7)
+    angles = speed * np.arange(frames)[:, None] * [1, 0]
+    clean = clips.product(clips.random_rotations(rng, 2), clips.from_vectors(angles[..., None] * axis))
+    return clips.noisy(rng, clean, noise), clean
+
+
+@pytest.mark.parametrize("name", REACH)
+@pytest.mark.parametrize("speed", [2.0, 2.5, 2.9])
+@pytest.mark.parametrize("axis", [np.array([0.0, 0, 1]), AXIS])
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_however_fast_a_joint_turns(backend, name, speed, axis, dtype):
+    """Nearly half a turn per frame is a straight line as well; a polynomial keeps it to the ends."""
+    q = spin(speed, axis, frames=220)[0].astype(dtype)
+    result, _ = FILTERS[name](backend, q)
+    reach = 0 if name == "savgol" else REACH[name]
+    difference = clips.angles(result, q)[reach : len(q) - reach]
+    assert difference.max() < (tolerances.FLOAT64 if dtype == np.float64 else tolerances.algebra(dtype))
+
+
+@pytest.mark.parametrize("name", REACH)
+@pytest.mark.parametrize("speed", [2.0, 2.5, 2.9])
+def test_a_fast_turn_with_noise_stays_near(backend, name, speed):
+    """Noise of a hundredth of a radian tilts the axis from frame to frame, and the faster the turn, the more of it is left."""
+    q, clean = spin(speed, AXIS, frames=220, noise=0.01)
+    result, _ = FILTERS[name](backend, q)
+    difference = clips.angles(result, clean)[REACH[name] : -REACH[name]]
+    assert difference[:, 0].max() < 0.1
+    assert difference[:, 1].max() < 0.03
+
+
+@pytest.mark.parametrize("name", REACH)
+@given(seed=seeds, weighted=st.booleans())
+def test_the_inverse_of_a_spin_gives_the_inverse(backend, name, seed, weighted):
+    rng = np.random.default_rng(seed)
+    q = clips.noisy(rng, spin(2.6, AXIS, frames=40)[1], 0.05)
+    trust = clips.confidences(rng, *q.shape[:2]) if weighted else None
+    result, inverse = (FILTERS[name](backend, x, None, trust)[0] for x in (q, q * [1, -1, -1, -1]))
+    assert clips.angles(inverse * [1, -1, -1, -1], result).max() < tolerances.FLOAT64
+
+
+@pytest.mark.parametrize("name", REACH)
+def test_a_joint_that_spins_leaves_the_others_alone(backend, name):
+    q, _ = spin(2.5, AXIS, noise=0.1)
+    still = np.repeat(q[:, 1:], 2, axis=1)
+    both, alone = (FILTERS[name](backend, x)[0] for x in (q, still))
+    np.testing.assert_array_equal(both[:, 1], alone[:, 1])
+
+
 def test_development_about_one_axis_unrolls_the_angle(backend):
     angle = np.cumsum(np.random.default_rng(6).normal(0.5, 0.3, 300))
     q = clips.from_vectors(angle[:, None, None] * AXIS)

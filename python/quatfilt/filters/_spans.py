@@ -101,11 +101,11 @@ class Clip:
             rotations = np.ascontiguousarray(rotations[span.frames, span.joints])
             trust = None if trust is None else np.ascontiguousarray(trust[span.frames, span.joints])
         if trust is not None and self.weighed:
-            rotations = _refilled(rotations, trust == 0)
+            rotations = refilled(rotations, trust == 0)
         return rotations, trust
 
 
-def _refilled(rotations: Array, unknown: Mask) -> Array:
+def refilled(rotations: Array, unknown: Mask) -> Array:
     """Return rotations with samples filled in along geodesics, the joints still in the hemisphere of their first sample.
 
     A joint of which nothing is known stays as it is.

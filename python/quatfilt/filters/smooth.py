@@ -176,7 +176,7 @@ def with_translation(
             trust = np.where(frozen, 0, 1 if trust is None else trust)
             trust = np.ascontiguousarray(trust, rotations.dtype)
         if trust is not None:
-            rotations = _without_untrusted(rotations, trust)
+            rotations = _spans.refilled(rotations, trust == 0)
             along = None if along is None else _paths.straightened(along, trust[:, 0] > 0)
         if model is None:
             return _smoothed(rotations, along, trust, here, position_noise, together=together)
@@ -232,16 +232,6 @@ def _trusted_part(translation: Array, clip: _spans.Clip) -> Array:
     if clip.confidence is None:
         return translation
     return np.where(clip.confidence[:, :1] > 0, translation, np.nan).astype(translation.dtype)
-
-
-def _without_untrusted(rotations: Array, trust: Array) -> Array:
-    """Fill in samples that nobody trusts, where their joint has others."""
-    untrusted = (trust == 0) & (trust > 0).any(axis=0)
-    if not untrusted.any():
-        return rotations
-    gone = rotations.copy()
-    gone[untrusted] = np.nan
-    return cast("Array", ops().fill_gaps(gone, -1, "slerp")[0])
 
 
 __all__ = ["Joints", "Noise", "smooth", "with_translation"]

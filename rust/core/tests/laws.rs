@@ -56,7 +56,7 @@ macro_rules! laws {
 
                 #[test]
                 fn nothing_lies_between_equal_rotations(q in quaternion::<$T>()) {
-                    prop_assert_eq!(log_short(between(q, q)), [0.0; 3]);
+                    prop_assert!(log_short(between(q, q)).iter().all(|&x| x == 0.0));
                 }
 
                 #[test]

@@ -121,6 +121,23 @@ def test_any_options(name, data, seed, frames, joints, dtype, reference_sigma, t
 
 @pytest.mark.parametrize("dtype", DTYPES)
 @pytest.mark.parametrize("name", FILTERS)
+@pytest.mark.parametrize("trusting", [False, True])
+@pytest.mark.parametrize("frames", [11, 33, 97])
+def test_spins(name, dtype, trusting, frames):
+    """Joints that turn by up to nearly half a turn per frame, for the whole clip, or for a while."""
+    rng = np.random.default_rng(frames)
+    angles = np.arange(frames)[:, None] * [2.0, 2.9, 1.1, 0.0]
+    angles[:, 3] = np.cumsum(2.5 * (np.arange(frames) // 9 % 3 == 1))
+    axes = rng.standard_normal((4, 3))
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    q = clips.noisy(rng, clips.from_vectors(angles[..., None] * axes), 0.02)
+    q = clips.product(clips.random_rotations(rng, 4), q).astype(dtype)
+    trust = clips.confidences(rng, frames, 4) if trusting else None
+    agree(name, q, SETTINGS[name], confidence=trust)
+
+
+@pytest.mark.parametrize("dtype", DTYPES)
+@pytest.mark.parametrize("name", FILTERS)
 def test_around_the_ends_of_chunks(name, dtype):
     for frames in (31, 32, 33, 63, 64, 65, 2047, 2049):
         rng = np.random.default_rng(frames)

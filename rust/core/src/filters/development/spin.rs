@@ -63,8 +63,8 @@ pub(super) fn follow_spin(
     let [p0, p1, p2, p3, s0, s1, s2, s3, l0, l1, l2, l3] = rest;
     let mut right = [s0, s1, s2, s3];
     let mut left_inverse = [l0, l1, l2, l3];
-    roll([a, b, c], 0.25, frames, &mut right);
-    roll([d, e, f], -0.25, frames, &mut left_inverse);
+    roll([&*a, &*b, &*c], 0.25, frames, &mut right);
+    roll([&*d, &*e, &*f], -0.25, frames, &mut left_inverse);
     let mut slow = [p0, p1, p2, p3];
     let at = |planes: &[&mut [f64]; 4], i: usize| planes.each_ref().map(|plane| plane[i]);
     for i in 0..frames {
@@ -131,9 +131,9 @@ fn mean_turns(
 }
 
 /// Rolls turns out, so much of each: unit quaternions, the first of which is 1.
-fn roll(turns: [&mut [f64]; 3], share: f64, frames: usize, out: &mut [&mut [f64]; 4]) {
+fn roll(turns: [&[f64]; 3], share: f64, frames: usize, out: &mut [&mut [f64]; 4]) {
     for i in 1..frames {
-        let step = exp_one(turns.each_ref().map(|plane| plane[i - 1] * share));
+        let step = exp_one(turns.map(|plane| plane[i - 1] * share));
         for (plane, x) in out.iter_mut().zip(step) {
             plane[i] = x;
         }
