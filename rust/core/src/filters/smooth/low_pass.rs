@@ -42,7 +42,6 @@ impl Smooth for LowPass {
         if frames <= ORDER {
             return Ok(());
         }
-<<<<<<< HEAD
         // Three columns, and one of zeros to fill the lanes.
         let padded = columns.vectors[0].len();
         spare.reshape(1, (3 + LANES * (1 + HIGHEST)) * padded);
@@ -52,20 +51,10 @@ impl Smooth for LowPass {
         let (rows, _) = rows.as_chunks_mut::<LANES>();
         let (rows, _): (&mut [Row], _) = rows.as_chunks_mut::<{ 1 + HIGHEST }>();
         let variances = columns.trust.map(|trust| {
-=======
-        spare.reshape(1, (3 + LANES * (1 + HIGHEST)) * frames);
-        let (variances, rest) = spare.row_mut(0).split_at_mut(frames);
-        let (softness, rest) = rest.split_at_mut(frames);
-        // The vectors have three columns, and four are solved side by side.
-        let (fourth, rest) = rest.split_at_mut(frames);
-        let (rows, _) = rest.as_chunks_mut::<LANES>();
-        let (rows, _): (&mut [Row], _) = rows.as_chunks_mut::<{ 1 + HIGHEST }>();
-        if let Some(trust) = columns.trust {
->>>>>>> despike
             inverses(trust, LEAST_WEIGHT, variances);
-        }
+            &variances[..frames]
+        });
         softness.fill(self.softness);
-<<<<<<< HEAD
         zeros.fill(0.0);
         let [x, y, z] = columns.vectors;
         penalised(
@@ -76,12 +65,5 @@ impl Smooth for LowPass {
             rows,
             interrupt,
         )
-=======
-        fourth.fill(0.0);
-        let [x, y, z] = columns.vectors.map(|vector| &mut vector[..frames]);
-        let variances = columns.trust.map(|_| &*variances);
-        penalised([ORDER; LANES], [x, y, z, fourth], variances, [&*softness; LANES], rows, interrupt)?;
-        Ok(())
->>>>>>> despike
     }
 }
