@@ -24,6 +24,7 @@ from quatfilt._reference.filters.one_euro import one_euro
 from quatfilt._reference.filters.orientation_filter import orientation_filter
 from quatfilt._reference.filters.savgol import savgol, savgol_derivative
 from quatfilt._reference.filters.smooth.body import smooth_body
+from quatfilt._reference.filters.smooth.gains import smooth_gains
 from quatfilt._reference.filters.smooth.patches import smooth_patches
 from quatfilt._reference.filters.smooth.rank import smooth_rank
 from quatfilt._reference.filters.smooth.smooth import smooth
@@ -108,6 +109,7 @@ __all__ = [
     "slerp",
     "smooth",
     "smooth_body",
+    "smooth_gains",
     "smooth_patches",
     "smooth_rank",
     "solve_pose",

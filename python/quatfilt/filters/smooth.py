@@ -9,6 +9,7 @@ from quatfilt import _validation
 from quatfilt._backend import ops
 from quatfilt._typing import Array, PerJoint
 from quatfilt.filters import _development, _paths, _spans
+from quatfilt.filters._gains import weights
 
 _STRONGEST = 1e6
 """Far below it already, nothing is left but a constant or a polynomial."""
@@ -26,6 +27,7 @@ def smooth(
     *,
     strength: PerJoint = 1.0,
     joints: Joints = "apart",
+    learned: bool = True,
     confidence: ArrayLike | None = None,
     gaps: _spans.Gaps = "fill",
     max_gap: float | None = None,
@@ -52,6 +54,9 @@ def smooth(
         With ``"together"`` three more steps follow: all joints are smoothed along the principal axes of the whole body, then
         groups of similar patches of motion, wherever they are within 256 frames, and then all joints as few movements at a
         time. What repeats itself, in time or between joints, is kept, and noise is not. Takes more than ten times as long.
+    learned : bool, default True
+        With ``joints="together"``, a last step corrects the result in several scales of time, with gains from a small network
+        that was trained on recordings of other people. False leaves it out; with ``"apart"`` there is no such step.
     confidence : array_like or None, shape (frames,) or (frames, joints), default None
         Weights of the samples, from 0 to 1; NaN counts as 0. Samples that were filled in have 0. What has 0 is filled in from
         its neighbours, and counts as a hundredth.
@@ -107,6 +112,7 @@ def smooth(
         None,
         strength=strength,
         joints=joints,
+        learned=learned,
         confidence=confidence,
         gaps=gaps,
         max_gap=max_gap,
@@ -116,10 +122,17 @@ def smooth(
 
 
 def with_translation(
-    q: ArrayLike, translation: Array | None, *, strength: PerJoint, joints: Joints, **missing: Any
+    q: ArrayLike,
+    translation: Array | None,
+    *,
+    strength: PerJoint,
+    joints: Joints,
+    learned: bool,
+    **missing: Any,
 ) -> tuple[Array, Array | None]:
     """Smooth as `smooth` does, and a translation ``(frames, 3)`` by its own noise and with the strength of joint 0."""
     together = _validation.choice(joints, "joints", _JOINTS) == "together"
+    learned = _validation.switch(learned, "learned")
     clip = _spans.prepare(q, together=together, **missing)
     scale = _validation.per_joint(
         strength, "strength", clip.rotations.shape[1], at_least=0, at_most=_STRONGEST
@@ -142,8 +155,10 @@ def with_translation(
         result, moved = ops().smooth(rotations, along, trust, levels, position_noise)
         if together:
             result = ops().smooth_body(rotations, result, trust, levels)
-            result = ops().smooth_patches(rotations, result, trust, levels, _PATCH_ROUNDS)
-            result = ops().smooth_rank(rotations, result, trust, levels)
+            patches = ops().smooth_patches(rotations, result, trust, levels, _PATCH_ROUNDS)
+            result = ops().smooth_rank(rotations, patches, trust, levels)
+            if learned:
+                result = ops().smooth_gains(rotations, patches, result, trust, levels, 1.0, *weights())
         return cast("Array", result), cast("Array | None", moved)
 
     return _development.filtered(clip, translation, run)

@@ -43,6 +43,8 @@ mod _core {
     #[pymodule_export]
     use super::filters::smooth::body::smooth_body;
     #[pymodule_export]
+    use super::filters::smooth::gains::smooth_gains;
+    #[pymodule_export]
     use super::filters::smooth::patches::smooth_patches;
     #[pymodule_export]
     use super::filters::smooth::rank::smooth_rank;

@@ -14,7 +14,7 @@ use crate::{ClipView, Error, Real};
 const TASK: usize = 1024;
 
 /// Frames that are read together: their rows stay in the first-level cache.
-const CHUNK: usize = 64;
+pub(super) const CHUNK: usize = 64;
 
 /// A clip, an estimate of it, and how much its samples are trusted.
 #[derive(Debug, Clone, Copy)]
@@ -137,7 +137,7 @@ impl<T: Real> Noisy<'_, T> {
 
 multiversion! {
     /// Half rotation vectors from one unit quaternion to another, the shorter way.
-    fn logarithms<T: Real>(from: &[[T; CHUNK]; 4], to: &[[T; CHUNK]; 4], out: &mut [[T; CHUNK]; 3]) {
+    pub(super) fn logarithms<T: Real>(from: &[[T; CHUNK]; 4], to: &[[T; CHUNK]; 4], out: &mut [[T; CHUNK]; 3]) {
         for i in 0..CHUNK {
             let a = [from[0][i], from[1][i], from[2][i], from[3][i]];
             let b = [to[0][i], to[1][i], to[2][i], to[3][i]];

@@ -11,11 +11,13 @@
 //! - `about`: the vectors of all joints about a pilot;
 //! - `body`: all joints together along the axes of the body;
 //! - `patches`: all joints by groups of similar patches;
-//! - `rank`: all joints as few movements at a time.
+//! - `rank`: all joints as few movements at a time;
+//! - `gains`: the learned last step.
 
 mod about;
 mod axes;
 mod body;
+mod gains;
 mod joint;
 mod patches;
 mod penalised;
@@ -30,6 +32,7 @@ use crate::error::check_length;
 use crate::parallel::Interrupt;
 pub use about::Noisy;
 pub use body::smooth_body;
+pub use gains::{Network, smooth_gains};
 pub use patches::smooth_patches;
 pub use rank::smooth_rank;
 use strength::Candidates;

@@ -17,6 +17,7 @@ use crate::error::check_length;
 use crate::parallel::{self, Interrupt};
 use crate::{ClipMut, Error, Real};
 use products::padded;
+pub(super) use symmetric::eigen;
 use window::Cosines;
 
 /// Frames of a window, at most.

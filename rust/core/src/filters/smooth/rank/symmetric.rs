@@ -9,7 +9,7 @@ use crate::{Error, Real};
 const STEPS: usize = 60;
 
 /// Eigenvalues and eigenvectors of a symmetric matrix of `n` rows, in no order; the vectors are rows. Uses up the matrix.
-pub(super) fn eigen(
+pub(in super::super) fn eigen(
     matrix: &mut [f64],
     n: usize,
     interrupt: &Interrupt,
