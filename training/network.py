@@ -15,6 +15,10 @@ MOMENTS = (0.9, 0.999)
 AVERAGE = 0.995
 """Share of the averaged weights that stays at each step."""
 
+LARGE_ERROR = 0.1
+"""Mean squared error of the pilot in a crop, in units of the variance of the noise, above which the crop counts less: its noise is not
+white, the gain is large, and all others would hardly be seen beside it."""
+
 LARGEST_GRADIENT = 1.0
 """Norm above which gradients are scaled down."""
 
@@ -71,12 +75,13 @@ def train(
 ) -> list[Array]:
     """Return the weights of three layers, for gates that are not standardised."""
     rng = np.random.default_rng(seed)
+    weight = weight * np.minimum(1, LARGE_ERROR * weight)
     sample = gates[rng.choice(len(gates), min(200_000, len(gates)), replace=False)].astype(np.float32)
     mean, deviation = sample.mean(axis=0), sample.std(axis=0) + 1e-3
     network = Network(gates.shape[1], units, basis.shape[1], rng)
     moments = [[np.zeros_like(layer), np.zeros_like(layer)] for layer in network.layers]
     averaged = [layer.copy() for layer in network.layers]
-    started, loss = time.monotonic(), 1.0
+    started, loss = time.monotonic(), float(np.mean(weight[:, None] * target**2))
     for step in range(steps):
         picked = np.sort(rng.integers(len(gates), size=batch))
         vectors = basis[picked].astype(np.float32)
@@ -89,15 +94,13 @@ def train(
         norm = np.sqrt(sum(float(np.sum(part**2)) for part in gradient))
         scale = np.float32(min(1.0, LARGEST_GRADIENT / max(norm, 1e-9)))
         rate = RATE * min(1, (step + 1) / WARM_UP) * (1 + np.cos(np.pi * step / steps)) / 2
-        for layer, part, (first, second), mean_layer in zip(
-            network.layers, gradient, moments, averaged, strict=True
-        ):
-            part *= scale
-            first += (1 - MOMENTS[0]) * (part - first)
-            second += (1 - MOMENTS[1]) * (part**2 - second)
-            root = np.sqrt(second / (1 - MOMENTS[1] ** (step + 1))) + 1e-8
-            layer -= np.float32(rate / (1 - MOMENTS[0] ** (step + 1))) * first / root
-            mean_layer += (1 - AVERAGE) * (layer - mean_layer)
+        for i, part in enumerate(gradient):
+            first, second = moments[i]
+            moments[i][0] = first + (1 - MOMENTS[0]) * (scale * part - first)
+            moments[i][1] = second + (1 - MOMENTS[1]) * ((scale * part) ** 2 - second)
+            root = np.sqrt(moments[i][1] / (1 - MOMENTS[1] ** (step + 1))) + 1e-8
+            network.layers[i] -= np.float32(rate / (1 - MOMENTS[0] ** (step + 1))) * moments[i][0] / root
+            averaged[i] += (1 - AVERAGE) * (network.layers[i] - averaged[i])
         if (step + 1) % 1000 == 0:
             print(
                 f"step {step + 1}: {loss:.4f} of the pilot's error, {time.monotonic() - started:.0f} s",

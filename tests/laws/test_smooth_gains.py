@@ -143,7 +143,7 @@ def test_all_scales_of_the_samples_together_are_the_samples(backend):
     impulse[256] = 1
     norms = []
     for k in range(6):
-        wide = sum(w * np.roll(impulse, shift * 2**k) for w, shift in zip((1, 4, 6, 4, 1), range(-2, 3))) / 16
+        wide = sum(w * np.roll(impulse, shift * 2**k) for w, shift in zip((1, 4, 6, 4, 1), range(-2, 3), strict=True)) / 16
         norms.append(np.linalg.norm(impulse - wide))
         impulse = wide
     gains = np.zeros(networks.BASES)
@@ -190,4 +190,4 @@ def test_the_step_can_be_left_out():
     estimates, _, _ = sample(8)
     with_step, without = (qf.smooth(estimates[0], joints="together", learned=x) for x in (True, False))
     assert clips.angles(with_step, without).max() > 1e-6
-    np.testing.assert_array_equal(qf.smooth(estimates[0]), qf.smooth(estimates[0], learned=False))
+    np.testing.assert_array_equal(qf.smooth(estimates[0]), qf.smooth(estimates[0], learned=True))

@@ -27,7 +27,7 @@ def smooth(
     *,
     strength: PerJoint = 1.0,
     joints: Joints = "apart",
-    learned: bool = True,
+    learned: bool = False,
     confidence: ArrayLike | None = None,
     gaps: _spans.Gaps = "fill",
     max_gap: float | None = None,
@@ -54,9 +54,9 @@ def smooth(
         With ``"together"`` three more steps follow: all joints are smoothed along the principal axes of the whole body, then
         groups of similar patches of motion, wherever they are within 256 frames, and then all joints as few movements at a
         time. What repeats itself, in time or between joints, is kept, and noise is not. Takes more than ten times as long.
-    learned : bool, default True
-        With ``joints="together"``, a last step corrects the result in several scales of time, with gains from a small network
-        that was trained on recordings of other people. False leaves it out; with ``"apart"`` there is no such step.
+    learned : bool, default False
+        With ``joints="together"``, True adds a last step, which corrects the result in several scales of time with gains from a
+        small network that was trained on recordings of other people. With ``"apart"`` there is no such step.
     confidence : array_like or None, shape (frames,) or (frames, joints), default None
         Weights of the samples, from 0 to 1; NaN counts as 0. Samples that were filled in have 0. What has 0 is filled in from
         its neighbours, and counts as a hundredth.
