@@ -81,7 +81,8 @@ def train(
     network = Network(gates.shape[1], units, basis.shape[1], rng)
     moments = [[np.zeros_like(layer), np.zeros_like(layer)] for layer in network.layers]
     averaged = [layer.copy() for layer in network.layers]
-    started, loss = time.monotonic(), float(np.mean(weight[:, None] * target**2))
+    of_pilot = float(np.mean(weight[:, None] * target**2))
+    started, loss = time.monotonic(), of_pilot
     for step in range(steps):
         picked = np.sort(rng.integers(len(gates), size=batch))
         vectors = basis[picked].astype(np.float32)
@@ -103,7 +104,7 @@ def train(
             averaged[i] += (1 - AVERAGE) * (network.layers[i] - averaged[i])
         if (step + 1) % 1000 == 0:
             print(
-                f"step {step + 1}: {loss:.4f} of the pilot's error, {time.monotonic() - started:.0f} s",
+                f"step {step + 1}: {loss / of_pilot:.4f} of the pilot's error, {time.monotonic() - started:.0f} s",
                 file=sys.stderr,
             )
     # The first layer takes the gates as they are.
