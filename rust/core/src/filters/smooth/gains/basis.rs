@@ -39,8 +39,8 @@ impl Basis {
                 let own = &sources.phase(column, phase)[EDGE..EDGE + cells];
                 let scale = |k: usize| if k == 0 { own } else { ladder.scale(k, phase) };
                 if source < 2 {
-                    for k in 0..SCALES {
-                        let by = if source == 0 { norms[k].recip() } else { 1.0 };
+                    for (k, norm) in norms[..SCALES].iter().enumerate() {
+                        let by = if source == 0 { norm.recip() } else { 1.0 };
                         write(source * OF_REST + k, phase, scale(k), scale(k + 1), by);
                     }
                     if source == 0 {

@@ -75,10 +75,10 @@ impl Gates {
                 self.own.row_mut(along + vector - OF_REST)[..cells].copy_from_slice(short);
             }
         }
-        for k in 0..SCALES {
+        for (k, &short) in SHORT[..SCALES].iter().enumerate() {
             basis.cell_means(k, OF_REST + k, frames, &mut self.power);
-            self.ladder.climb(&self.power, SHORT[k]);
-            over_norm(self.ladder.scale(SHORT[k]), self.own.row_mut(along + k));
+            self.ladder.climb(&self.power, short);
+            over_norm(self.ladder.scale(short), self.own.row_mut(along + k));
         }
     }
 
@@ -106,14 +106,14 @@ pub(super) fn of_body(sums: &[Planes<f32>], columns: usize) -> Planes<f32> {
     let cells = sums.first().map_or(0, Planes::length);
     let mut result = Planes::new(BASES, cells + WIDTH);
     let mut ladder = CellLadder::default();
-    for vector in 0..BASES {
+    for (vector, &short) in SHORT.iter().enumerate() {
         let mut total = vec![0.0; cells];
         for sum in sums {
             add(sum.row(vector), &mut total);
         }
         scale(1.0 / columns as f32, &mut total);
-        ladder.climb(&total, SHORT[vector]);
-        logarithms(ladder.scale(SHORT[vector]), LOGARITHM, result.row_mut(vector));
+        ladder.climb(&total, short);
+        logarithms(ladder.scale(short), LOGARITHM, result.row_mut(vector));
     }
     result
 }

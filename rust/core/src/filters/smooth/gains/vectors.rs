@@ -143,8 +143,9 @@ fn displacements<T: Real>(
         }
         let mut found = [[T::ZERO; CHUNK]; 3];
         logarithms(&samples[0], &samples[1], &mut found);
-        for i in 0..length {
-            take(start + i, [found[0][i], found[1][i], found[2][i]]);
+        let [x, y, z] = found;
+        for (i, ((x, y), z)) in x.into_iter().zip(y).zip(z).enumerate().take(length) {
+            take(start + i, [x, y, z]);
         }
     }
 }
@@ -192,7 +193,7 @@ pub(super) fn sources<T: Real>(
             });
         }
         for axis in 0..3 {
-            combine(vectors.rows_from::<3>(0), [0, 1, 2].map(|i| axes[i][axis]), &mut turned);
+            combine(vectors.rows_from::<3>(0), axes.map(|row| row[axis]), &mut turned);
             result.load(3 * source + axis, &turned, source > 0);
         }
     }
