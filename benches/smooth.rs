@@ -43,7 +43,7 @@ fn smooth<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error>
         smooth_rank(&noisy, ClipMut::new(&mut out, frames, joints)?, &interrupt)
     })?;
     // As many weights as the network of the package has.
-    let network = Network::new(&[0.01; 102 * 64], &[0.01; 65 * 64], &[0.01; 65 * 19])?;
+    let network = Network::new(&vec![0.01; 102 * 64], &vec![0.01; 65 * 64], &vec![0.01; 65 * 19])?;
     timer.threads::<T, _, _>("filters/smooth_gains", size, || {
         smooth_gains(&noisy, clip, 1.0, &network, ClipMut::new(&mut out, frames, joints)?, &interrupt)
     })
