@@ -143,7 +143,13 @@ def test_all_scales_of_the_samples_together_are_the_samples(backend):
     impulse[256] = 1
     norms = []
     for k in range(6):
-        wide = sum(w * np.roll(impulse, shift * 2**k) for w, shift in zip((1, 4, 6, 4, 1), range(-2, 3), strict=True)) / 16
+        wide = (
+            sum(
+                w * np.roll(impulse, shift * 2**k)
+                for w, shift in zip((1, 4, 6, 4, 1), range(-2, 3), strict=True)
+            )
+            / 16
+        )
         norms.append(np.linalg.norm(impulse - wide))
         impulse = wide
     gains = np.zeros(networks.BASES)
