@@ -3,12 +3,14 @@
 #   make PYTHON=python3.12 test    another Python for the virtual environment
 #   make test PYTEST="-k mean -x"  arguments for pytest
 #   make bench BENCH="rotations"   arguments for the benchmarks
+#   make test-properties SEEDS=20  from how many seeds examples are drawn
 
 PYTHON ?= python3
 VENV ?= .venv
 PYTEST ?=
 BENCH ?=
 TRAIN ?=
+SEEDS ?= 20
 
 ifeq ($(OS),Windows_NT)
 BIN := $(VENV)/Scripts
@@ -74,6 +76,12 @@ test-rust: prerequisites
 .PHONY: test-python  ## Run the tests and doctests of the Python package (arguments: PYTEST="...")
 test-python: build $(VENV)/.group-test
 	$(BIN)/python -m pytest tests python/quatfilt $(PYTEST)
+
+.PHONY: test-properties  ## Run the tests that draw examples, from other seeds (arguments: SEEDS=20 PYTEST="...")
+test-properties: build $(VENV)/.group-test
+	@failed=; for seed in $$(seq $(SEEDS)); do echo "== seed $$seed"; \
+		$(BIN)/python -m pytest tests -m hypothesis --quiet --hypothesis-seed=$$seed $(PYTEST) || failed="$$failed $$seed"; \
+	done; [ -z "$$failed" ] || { echo "failed with the seeds$$failed"; exit 1; }
 
 .PHONY: test-debug  ## Run the contract and parity tests on a build with overflow checks
 test-debug: build $(VENV)/.group-test

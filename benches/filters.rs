@@ -134,6 +134,7 @@ fn despike<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error
         smallest: vec![0.105; joints],
         radius: 3,
         threshold: 4.0,
+        longest: 45,
     };
     for name in ["filters/despike", "filters/despike/spikes"] {
         let clip = ClipView::new(&q, frames, joints)?;

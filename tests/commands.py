@@ -4,6 +4,8 @@ import os
 import subprocess
 import sys
 
+from patience import PATIENCE
+
 COMMAND = [sys.executable, "-m", "quatfilt"]
 
 
@@ -17,7 +19,7 @@ def run(*arguments, cwd=None, status=0, **environment):
         cwd=cwd,
         env={**os.environ, "PYTHONIOENCODING": "utf-8", **environment},
         check=False,
-        timeout=120,
+        timeout=PATIENCE,
     )
     assert done.returncode == status, done.stderr
     if status == 0:

@@ -1,3 +1,3 @@
 """Fixtures for all tests."""
 
-pytest_plugins = ["plugins.backend", "plugins.data"]
+pytest_plugins = ["plugins.backend", "plugins.data", "plugins.properties"]

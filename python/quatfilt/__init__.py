@@ -33,9 +33,11 @@ from quatfilt.geodesics.compressed import Compressed
 from quatfilt.geodesics.pga import PrincipalGeodesicAnalysis
 from quatfilt.geodesics.segment import segment
 from quatfilt.motion import metrics
+from quatfilt.motion.feet import lock_feet
 from quatfilt.motion.motion import Motion
 from quatfilt.motion.report import Report, report
 from quatfilt.motion.skeleton import EndSite, Skeleton
+from quatfilt.noise.model import NoiseModel, noise_model
 from quatfilt.noise.noise import add_gaussian_noise, add_impulse_noise, noise_level
 from quatfilt.reconstruction.database import MotionDatabase
 from quatfilt.reconstruction.gplvm import PoseGPLVM
@@ -70,6 +72,7 @@ __all__ = [
     "Motion",
     "MotionDatabase",
     "MotionReconstructor",
+    "NoiseModel",
     "NonlocalPoseMeansStream",
     "OneEuroStream",
     "PoseGPLVM",
@@ -98,6 +101,7 @@ __all__ = [
     "get_num_threads",
     "kalman",
     "kalman_noises",
+    "lock_feet",
     "log",
     "mean",
     "metrics",
@@ -105,6 +109,7 @@ __all__ = [
     "nearest_segments",
     "neighbor_graph",
     "noise_level",
+    "noise_model",
     "nonlocal_pose_means",
     "normalize",
     "one_euro",

@@ -4,6 +4,7 @@ A backend is a module of free functions. Both have the same functions with the s
 """
 
 import os
+import threading
 from types import ModuleType, TracebackType
 from typing import Literal, Self
 
@@ -21,6 +22,20 @@ def _checked(name: object) -> ModuleType:
 
 
 _current = _checked(os.environ.get("QUATFILT_BACKEND", "rust"))
+
+_first = _current
+"""The choice that holds where no other one does."""
+
+_choices: list["use_backend"] = []
+"""Choices in force, in the order in which they were made; the last one counts."""
+
+_lock = threading.Lock()
+
+
+def _choose() -> None:
+    """Set the backend in use to that of the last choice in force."""
+    global _current  # noqa: PLW0603 - the choice is the process's
+    _current = _choices[-1].chosen if _choices else _first
 
 
 def ops() -> ModuleType:
@@ -62,12 +77,21 @@ class use_backend:  # noqa: N801 - used as a function, and as a context manager
     """
 
     def __init__(self, name: Backend) -> None:
-        global _current  # noqa: PLW0603 - the choice is the process's
-        chosen = _checked(name)
-        self._before = _current
-        _current = chosen
+        self.chosen = _checked(name)
+        self.entered = False
+        with _lock:
+            # Of two choices in a row that are no contexts, the first one will never be in force again.
+            if len(_choices) > 1 and not (_choices[-1].entered or _choices[-2].entered):
+                del _choices[-2]
+            _choices.append(self)
+            _choose()
 
     def __enter__(self) -> Self:
+        with _lock:
+            self.entered = True
+            if self not in _choices:
+                _choices.append(self)
+            _choose()
         return self
 
     def __exit__(
@@ -76,8 +100,11 @@ class use_backend:  # noqa: N801 - used as a function, and as a context manager
         value: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        global _current  # noqa: PLW0603 - the choice is the process's
-        _current = self._before
+        with _lock:
+            # Other contexts, of other threads, stay in force; what was chosen without one within this context does not.
+            place = _choices.index(self)
+            _choices[place:] = [choice for choice in _choices[place + 1 :] if choice.entered]
+            _choose()
 
 
 def get_backend() -> Backend:

@@ -23,9 +23,13 @@ __all__ = [
     "continuous_euler",
     "decompress",
     "develop",
+    "drawn_towards",
     "exp",
     "fill_gaps",
+    "find_repeats",
     "find_spikes",
+    "find_swaps",
+    "foot_displacements",
     "forward_kinematics",
     "forward_kinematics_moving",
     "from_euler",
@@ -41,12 +45,18 @@ __all__ = [
     "kalman_stream",
     "kalman_vectors",
     "kalman_vectors_ratio",
+    "knots",
     "log",
+    "low_pass",
     "mean",
     "multiply",
     "nearest_segments",
     "neighbor_graph",
+    "noise_along_time",
+    "noise_axes",
+    "noise_colour",
     "noise_level",
+    "noise_over_motion",
     "nonlocal_pose_means",
     "nonlocal_pose_means_stream",
     "normalize",
@@ -54,6 +64,7 @@ __all__ = [
     "one_euro_stream",
     "orientation_filter",
     "patch_neighbors",
+    "place_feet",
     "pose_features",
     "predict_pose",
     "principal_frames",
@@ -61,6 +72,7 @@ __all__ = [
     "read_amc",
     "read_asf",
     "read_bvh",
+    "sampling",
     "savgol",
     "savgol_derivative",
     "scan",
@@ -75,13 +87,17 @@ __all__ = [
     "smooth_patches",
     "smooth_rank",
     "solve_pose",
+    "spline",
     "split_heading",
     "to_euler",
     "track",
     "track_stream",
+    "tracker_noise",
     "trusted",
     "undevelop",
+    "unwhiten",
     "weighted_moving_mean",
+    "whiten",
     "write_bvh",
 ]
 
@@ -122,8 +138,18 @@ def find_spikes(
     smallest: NDArray[np.float64],
     radius: int,
     threshold: float,
+    longest: int,
     /,
 ) -> Mask: ...
+def find_swaps(
+    q: Array,
+    confidence: Array | None,
+    noise: NDArray[np.float64],
+    smallest: NDArray[np.float64],
+    threshold: float,
+    longest: int,
+    /,
+) -> NDArray[np.int64]: ...
 
 # filters/development
 def develop(
@@ -251,6 +277,16 @@ def smooth_gains(
     /,
 ) -> Array: ...
 
+# filters/smooth/low_pass
+def low_pass(
+    q: Array,
+    translation: Array | None,
+    confidence: Array | None,
+    reference_sigma: NDArray[np.float64],
+    softness: float,
+    /,
+) -> tuple[Array, Array | None]: ...
+
 # filters/smooth/patches
 def smooth_patches(
     q: Array, pilot: Array, confidence: Array | None, noise: NDArray[np.float64], rounds: int, /
@@ -358,6 +394,31 @@ def segment(
     q: Array, components: int, window: int, min_length: int, lag: int, threshold: float, /
 ) -> tuple[NDArray[np.intp], NDArray[np.float64], NDArray[np.float64]]: ...
 
+# motion/feet
+def foot_displacements(
+    before: Array,
+    after: Array,
+    lengths: NDArray[np.float64],
+    up: int,
+    fps: float,
+    given: Mask | None,
+    lock: bool,
+    /,
+) -> tuple[NDArray[np.float64], Mask]: ...
+def place_feet(
+    rotations: Array,
+    translation: Array,
+    local: Array,
+    parents: NDArray[np.int64],
+    pelvis: int,
+    legs: NDArray[np.int64],
+    lengths: NDArray[np.float64],
+    displacements: NDArray[np.float64],
+    root: bool,
+    lock: bool,
+    /,
+) -> tuple[Array, Array]: ...
+
 # motion/skeleton
 def forward_kinematics(
     rotations: Array, translation: Array, parents: NDArray[np.int64], offsets: Array, /
@@ -366,8 +427,38 @@ def forward_kinematics_moving(
     rotations: Array, joint_translations: Array, parents: NDArray[np.int64], /
 ) -> Array: ...
 
+# noise/model
+def noise_along_time(q: Array, level: Array, /) -> NDArray[np.float64]: ...
+def noise_axes(q: Array, /) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+def noise_colour(q: Array, /) -> float: ...
+def noise_over_motion(q: Array, level: Array, /) -> float: ...
+
 # noise/noise
 def noise_level(q: Array, /) -> Array: ...
+
+# noise/repeats
+def find_repeats(q: Array, /) -> Mask: ...
+
+# noise/whiten
+def drawn_towards(q: Array, estimate: Array, share: NDArray[np.float64], /) -> Array: ...
+def unwhiten(
+    q: Array,
+    reference: NDArray[np.float64],
+    development: NDArray[np.float64],
+    colour: float,
+    spread: NDArray[np.float64],
+    axes: NDArray[np.float64],
+    /,
+) -> NDArray[np.float64]: ...
+def whiten(
+    reference: NDArray[np.float64],
+    development: NDArray[np.float64],
+    vectors: NDArray[np.float64],
+    colour: float,
+    spread: NDArray[np.float64],
+    axes: NDArray[np.float64],
+    /,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
 
 # reconstruction/features
 def pose_features(q: Array, means: NDArray[np.float64], weights: NDArray[np.float64], /) -> Array: ...
@@ -480,6 +571,18 @@ def scan(q: Array, /) -> tuple[int, float, int]: ...
 
 # rotations/resample
 def slerp(q: Array, times: NDArray[np.float64], new_times: NDArray[np.float64], /) -> Array: ...
+
+# sampling/sampling
+def sampling(q: Array, fps: float, /) -> tuple[int, NDArray[np.float64], Mask]: ...
+
+# sampling/spline
+def knots(q: Array, times: NDArray[np.float64], /) -> Array: ...
+def spline(
+    q: Array, times: NDArray[np.float64], new_times: NDArray[np.float64], cutoff: float, /
+) -> Array: ...
+
+# sampling/tracker_noise
+def tracker_noise(q: Array, fps: float, /) -> NDArray[np.float64]: ...
 
 # search/patch_neighbors
 def patch_neighbors(

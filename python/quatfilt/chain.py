@@ -76,6 +76,11 @@ def plan(method: str | Sequence[str], preset: str | None, options: Mapping[str, 
         for option, value in step.settings.items():
             if value is REQUIRED:
                 raise TypeError(f"{step.name}.{option}: expected a value, got none")
+        if preset is not None and "cutoff" in step.chosen and "fps" not in step.chosen:
+            raise ValueError(
+                f"preset {preset!r} needs the frame rate: pass fps=30 (frames per second); the cutoff of its step "
+                f"{step.name} is in hertz"
+            )
     return tuple(steps)
 
 
@@ -166,7 +171,7 @@ def run(
     """
     *before, last = steps
     if before:
-        _refuse_early(steps, rotations)
+        refuse_early(steps, rotations)
     for step in before:
         # What is not to be there is refused by the first step.
         between = "raise" if step.settings["gaps"] == "raise" else "keep"
@@ -174,7 +179,7 @@ def run(
     return _filtered(last, last.settings["gaps"], rotations, translation)
 
 
-def _refuse_early(steps: Sequence[Step], rotations: Array) -> None:
+def refuse_early(steps: Sequence[Step], rotations: Array) -> None:
     """Let every step look at its options, with a clip of no frames."""
     clip, _ = _validation.clip(rotations)
     frames, joints = clip.shape[:2]
@@ -216,4 +221,4 @@ def _filtered(
     return result, moved
 
 
-__all__ = ["OF_THE_CLIP", "SHARED", "Step", "names", "plan", "run"]
+__all__ = ["OF_THE_CLIP", "SHARED", "Step", "names", "plan", "refuse_early", "run"]

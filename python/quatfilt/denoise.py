@@ -5,10 +5,14 @@ from typing import Any, overload
 
 from numpy.typing import ArrayLike
 
-from quatfilt import _validation, chain
+from quatfilt import _validation, chain, sampling
 from quatfilt._typing import Array
-from quatfilt.methods import METHODS
+from quatfilt.methods import AUTO, METHODS
+from quatfilt.motion.feet import PLACEMENTS, Placement, with_feet
 from quatfilt.motion.motion import Motion
+
+CALMED = (None, "video")
+"""Presets whose clips may jitter as estimates from video do."""
 
 
 @overload
@@ -18,6 +22,7 @@ def denoise(
     method: str | Sequence[str] = "auto",
     translation: bool = True,
     preset: str | None = None,
+    feet: Placement | None = "keep",
     **options: Any,
 ) -> Motion: ...
 @overload
@@ -27,6 +32,7 @@ def denoise(
     method: str | Sequence[str] = "auto",
     translation: bool = True,
     preset: str | None = None,
+    feet: Placement | None = "keep",
     **options: Any,
 ) -> Array: ...
 def denoise(
@@ -35,6 +41,7 @@ def denoise(
     method: str | Sequence[str] = "auto",
     translation: bool = True,
     preset: str | None = None,
+    feet: Placement | None = "keep",
     **options: Any,
 ) -> Motion | Array:
     """Denoise a motion, or a clip of rotations, with one filter or several.
@@ -52,6 +59,10 @@ def denoise(
     preset : {"optical", "inertial", "video"} or None, default None
         A chain with values for a kind of recording; what else is given goes before it. Beside methods of the caller's, it
         gives values to the steps that it has.
+    feet : {"keep", "lock"} or None, default "keep"
+        What happens to the feet of a motion after the last filter. ``"keep"``: while a foot stands on the ground it follows its path in the
+        input, without the noise; a filter alone makes feet slide. ``"lock"``: it stays at one point. None: nothing. Legs are found by the
+        names of the joints; without legs, and for arrays, ``"keep"`` does nothing.
     **options
         Options of the filters. A plain keyword is for the one step that has it; `boundary`, `confidence`, `fps`, `gaps`,
         `max_gap` and `scalar_first` are for all steps. The name of a step with a dict is for that step, as in
@@ -71,10 +82,15 @@ def denoise(
     See Also
     --------
     nonlocal_pose_means, bilateral, despike, orientation_filter : Filters, their options and their cost.
+    lock_feet : The step that holds feet on the ground, with options.
     report : What a filter did.
 
     Notes
     -----
+    "auto" and presets first look at the source: of held, repeated and interpolated frames only measurements are cleaned, at the
+    source's rate, and a spline leads back to all frames; frozen stretches stay. Jitter of estimates from video is filtered by a low pass.
+    ``fps`` tells what that needs.
+
     A chain is its steps one after the other, each with ``gaps="keep"`` but for the last: missing samples are filled anew
     by each step from neighbours that are the cleaner, and no step trusts what another one filled in.
 
@@ -92,19 +108,38 @@ def denoise(
     True
     """
     _validation.switch(translation, "translation")
+    placement = None if feet is None else _validation.choice(feet, "feet", PLACEMENTS)
     if isinstance(motion_or_rotations, Motion):
         motion = motion_or_rotations
         if "scalar_first" in options:
             raise TypeError("scalar_first: expected no such option with a Motion, got one")
         steps = chain.plan(method, preset, {"fps": motion.fps, **options})
-        rotations, moved = chain.run(steps, motion.rotations, motion.translation if translation else None)
+        rotations, moved = _run(
+            method, preset, steps, motion.rotations, motion.translation if translation else None
+        )
         changes = {} if moved is None else {"translation": moved}
-        return motion.replace(rotations=rotations, **changes)
+        result = motion.replace(rotations=rotations, **changes)
+        return result if placement is None else with_feet(motion, result, placement, translation=translation)
+    if placement == "lock":
+        raise TypeError(f"feet: expected a Motion to lock its feet, got {type(motion_or_rotations).__name__}")
     steps = chain.plan(method, preset, options)
     scalar_first = options.get("scalar_first", True)
     array = _validation.quaternions(motion_or_rotations, "rotations", scalar_first=scalar_first)
-    rotations, _ = chain.run(steps, array)
+    rotations, _ = _run(method, preset, steps, array, None)
     return _validation.scalar_order(rotations, scalar_first=scalar_first)
+
+
+def _run(
+    method: str | Sequence[str],
+    preset: str | None,
+    steps: Sequence[chain.Step],
+    rotations: Array,
+    translation: Array | None,
+) -> tuple[Array, Array | None]:
+    """Run steps; those of the automatic method and of presets at the rate of the source."""
+    if method != AUTO:
+        return chain.run(steps, rotations, translation)
+    return sampling.run(steps, rotations, translation, calmed=preset in CALMED)
 
 
 __all__ = ["METHODS", "denoise"]

@@ -27,7 +27,9 @@ class Preset:
     reasons: Mapping[str, str] = field(default_factory=dict)
 
 
-BEST: Final = Preset("what method='auto' runs", {"despike": {}, "smooth": {"joints": "together"}})
+BEST: Final = Preset(
+    "what method='auto' runs", {"despike": {}, "smooth": {"joints": "together", "noise": "measured"}}
+)
 """The best chain that this version has, for clips of which nothing is known."""
 
 PRESETS: Final[dict[str, Preset]] = {

@@ -53,6 +53,19 @@ def with_gaps(q):
     return gaps
 
 
+def with_legs(q, work):
+    """Apply `work` to a motion of two legs, that of one side in the other's phase; rotations ``(frames, 3, 4)`` are hip, knee and ankle."""
+    names = ("hips", *(side + part for side in ("l", "r") for part in ("thigh", "shin", "foot")))
+    offsets = np.array([[0, 0, 0], *[[x, y, 0] for x in (9, -9) for y in (0, -43, -42)]], float)
+    skeleton = qf.Skeleton(names, [-1, 0, 1, 2, 0, 4, 5], offsets)
+    rest = np.tile([1.0, 0, 0, 0], (len(q), 1, 1)).astype(q.dtype)
+    small = np.where(np.isnan(q), q, 0.02 * q + rest)
+    legs = small / np.linalg.norm(small, axis=-1, keepdims=True)
+    rotations = np.concatenate([rest, legs, legs[::-1]], axis=1)
+    rotations[np.isnan(rotations).any(axis=-1)] = 0
+    return work(qf.Motion(rotations, np.full((len(q), 3), 85.0), fps=60, skeleton=skeleton)).rotations
+
+
 POSES = 4_000
 """Poses that are searched, of nine numbers each."""
 
@@ -161,6 +174,7 @@ CALLS = {
     "geodesic_distance": lambda a, b, _v: qf.geodesic_distance(six_times(a), six_times(b)),
     "kalman": lambda a, _b, _v: qf.kalman(with_gaps(a), lookahead=2),
     "kalman_noises": lambda a, _b, _v: qf.kalman_noises(with_gaps(a))[0],
+    "lock_feet": lambda a, _b, _v: with_legs(with_gaps(a), qf.lock_feet),
     "log": lambda a, _b, _v: qf.log(six_times(a)),
     "mean": lambda a, _b, _v: qf.mean(with_gaps(a)),
     "multiply": lambda a, b, _v: qf.multiply(six_times(a), six_times(b)),
@@ -169,6 +183,7 @@ CALLS = {
     )[1],
     "neighbor_graph": lambda _a, _b, v: qf.neighbor_graph(rows(v), borders(), degree=3)[1],
     "noise_level": lambda a, _b, _v: qf.noise_level(with_gaps(a)),
+    "noise_model": lambda a, _b, _v: qf.noise_model(with_gaps(a)).level,
     "nonlocal_pose_means": lambda a, _b, _v: qf.nonlocal_pose_means(with_gaps(a), bandwidth=1.0),
     "normalize": lambda a, _b, _v: qf.normalize(six_times(2 * a)),
     "one_euro": lambda a, _b, _v: qf.one_euro(with_gaps(a), min_cutoff=0.1, beta=0.1),

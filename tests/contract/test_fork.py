@@ -10,9 +10,7 @@ import numpy as np
 import pytest
 import quatfilt as qf
 from contract.public_calls import CALLS, samples
-
-LIMIT = 60
-"""Seconds after which a child counts as hanging; it needs a fraction of one."""
+from patience import PATIENCE
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="not on this platform: there is no fork")
 
@@ -32,8 +30,8 @@ def digest(arguments):
 
 
 def status_of(child):
-    """Wait for `child` and return its exit status; kill it after the limit."""
-    deadline = time.monotonic() + LIMIT
+    """Wait for `child` and return its exit status; kill it where it hangs."""
+    deadline = time.monotonic() + PATIENCE
     while time.monotonic() < deadline:
         ended, status = os.waitpid(child, os.WNOHANG)
         if ended:
@@ -41,7 +39,7 @@ def status_of(child):
         time.sleep(0.01)
     os.kill(child, signal.SIGKILL)
     os.waitpid(child, 0)
-    pytest.fail(f"the child did not end within {LIMIT} s")
+    pytest.fail(f"the child did not end within {PATIENCE} s")
 
 
 def forked(work):
@@ -87,5 +85,5 @@ def test_a_multiprocessing_pool_computes():
     arguments = samples(np.float32)
     expected = digest(arguments)
     with multiprocessing.get_context("fork").Pool(2) as pool:
-        results = pool.map_async(digest, [arguments] * 3).get(timeout=LIMIT)
+        results = pool.map_async(digest, [arguments] * 3).get(timeout=PATIENCE)
     assert results == [expected] * 3

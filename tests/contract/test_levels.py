@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 import quatfilt as qf
 from contract.public_calls import CALLS, NOT_KERNELS
+from patience import PATIENCE
 
 TESTS = Path(__file__).parents[1]
 
@@ -31,7 +32,7 @@ def digests():
                 env=variables,
                 capture_output=True,
                 text=True,
-                timeout=120,
+                timeout=PATIENCE,
                 check=False,
             )
             assert ended.returncode == 0, ended.stderr

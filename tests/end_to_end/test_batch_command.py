@@ -1,16 +1,17 @@
 """``quatfilt batch``: many files, some of them bad, again and again."""
 
+import contextlib
 import json
 import os
 import shutil
 import signal
 import subprocess
-import time
 
 import numpy as np
 import pytest
 import quatfilt as qf
 from commands import COMMAND, run
+from patience import PATIENCE, opened
 from quatfilt.cli import main
 from quatfilt.evaluation.synthetic import walk
 
@@ -185,33 +186,37 @@ def test_bad_input_is_one_line_and_nothing_is_written(takes, tmp_path, words, me
     assert tree(folder) == before
 
 
-TAKES = 30
-"""So many that the last one is far from done when the first one is."""
-
-
 @pytest.mark.skipif(os.name == "nt", reason="not on this platform: signals")
 @pytest.mark.parametrize("workers", [1, 2])
-def test_an_interrupted_batch_goes_on_where_it_was(tmp_path, workers):
-    takes, out = tmp_path / "takes", tmp_path / "out"
-    takes.mkdir()
-    clip = walk(seconds=40)
-    for number in range(TAKES):
-        qf.write_motion(takes / f"{number:02}.npz", clip)
-    words = ["--workers", str(workers), "--method", "nonlocal-pose-means", "--option", "search_radius=2400"]
-    command = [*COMMAND, "batch", str(takes), "-o", str(out), *words]
+@pytest.mark.parametrize("everybody", [True, False])
+def test_an_interrupted_batch_goes_on_where_it_was(takes, tmp_path, workers, everybody):
+    """Each process is done with a file or waits for one that never ends, and there are more of these."""
+    out, pipes = tmp_path / "out", [tmp_path / f"{number}.bvh" for number in range(9)]
+    for pipe in pipes:
+        os.mkfifo(pipe)
+    command = [*COMMAND, "batch", str(takes / "one.bvh"), *map(str, pipes), "-o", str(out)]
     with subprocess.Popen(
-        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+        [*command, "--workers", str(workers)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
     ) as process:
-        started = time.monotonic()
-        while not list(out.glob("*.npz")) and process.poll() is None and time.monotonic() < started + 100:
-            time.sleep(0.01)
-        os.killpg(process.pid, signal.SIGINT)  # as a terminal does
-        _, said = process.communicate(timeout=100)
+        try:
+            writers = [opened(pipe, process) for pipe in pipes[:workers]]
+            # A terminal tells all of its processes.
+            (os.killpg if everybody else os.kill)(process.pid, signal.SIGINT)
+            _, said = process.communicate(timeout=PATIENCE)
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+    for writer in writers:
+        os.close(writer)
     assert (process.returncode, said) == (130, "quatfilt: interrupted\n")
-    written = sorted(path.name for path in out.iterdir() if path.suffix == ".npz")
-    assert 0 < len(written) < TAKES
-    assert set(tree(out)) == {*written, "quatfilt-batch.jsonl"}, "a temporary file was left"
-    for name in written:
-        assert len(qf.read_motion(out / name)) == len(clip)
-    done = run("batch", takes, "-o", out)
-    assert done.stdout.splitlines()[-1] == f"{TAKES - len(written)} written, {len(written)} kept, 0 failed"
+    assert set(tree(out)) == {"one.bvh", "quatfilt-batch.jsonl"}, "a temporary file was left"
+    assert len(qf.read_motion(out / "one.bvh")) == 120
+    for pipe in pipes:
+        pipe.unlink()
+        shutil.copy(takes / "one.bvh", pipe)
+    done = run(*command[len(COMMAND) :])
+    assert done.stdout.splitlines()[-1] == "9 written, 1 kept, 0 failed"

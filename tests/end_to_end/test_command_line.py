@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 import quatfilt as qf
 from commands import COMMAND, refused, run
+from patience import PATIENCE, opened
 from quatfilt.cli import main
 from quatfilt.evaluation.synthetic import walk
 
-EVALUATIONS = ("nlpm-table1", "bilateral-figs", "smooth-goal", "compression")
+EVALUATIONS = ("nlpm-table1", "bilateral-figs", "smooth-goal", "robust-denoising", "compression")
 
 
 @pytest.fixture(scope="module", name="folder")
@@ -345,9 +346,9 @@ def test_an_interrupted_process_says_so(tmp_path):
     os.mkfifo(pipe)
     command = [*COMMAND, "denoise", str(pipe), "-o", str(output)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        writer = os.open(pipe, os.O_WRONLY)
+        writer = opened(pipe, process)
         process.send_signal(signal.SIGINT)
-        _, said = process.communicate(timeout=100)
+        _, said = process.communicate(timeout=PATIENCE)
         os.close(writer)
     assert process.returncode == 130
     assert said == "quatfilt: interrupted\n"

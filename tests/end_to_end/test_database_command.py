@@ -3,12 +3,13 @@
 import json
 import signal
 import subprocess
-import time
+import sys
 
 import numpy as np
 import pytest
 import quatfilt as qf
-from commands import COMMAND, refused, run
+from commands import refused, run
+from patience import PATIENCE
 from quatfilt.cli import main
 from quatfilt.evaluation.synthetic import walk
 from quatfilt.reconstruction.database.writer import folder_beside
@@ -160,70 +161,106 @@ def test_bad_input(takes, tmp_path, capsys):
     assert refused("database", "info", script) == f"{script}: not a motion database"
 
 
-def test_a_killed_build_leaves_the_old_file_or_none(tmp_path):
-    folder, out = tmp_path / "many", tmp_path / "out" / "db"
+STOPPED = """
+import os, signal, sys
+from importlib import import_module
+from quatfilt.cli import main
+
+module, _, name = "{where}".rpartition(":")
+owner, _, function = name.rpartition(".")
+place = import_module(module)
+for word in filter(None, owner.split(".")):
+    place = getattr(place, word)
+calls = []
+
+def stop(*arguments, exact=getattr(place, function), **options):
+    calls.append(function)
+    if len(calls) == {call}:
+        os.kill(os.getpid(), signal.{signal})
+    return exact(*arguments, **options)
+
+setattr(place, function, stop)
+sys.exit(main(sys.argv[1:]))
+"""
+"""The command in a process that sends itself a signal where a function is called for the n-th time."""
+
+WRITER = "quatfilt.reconstruction.database.writer:"
+
+MOMENTS = {
+    "empty": (WRITER + "Writer.append", 1),
+    "some of the clips": (WRITER + "Writer.append", 3),
+    "all rotations": (WRITER + "Writer.mapped", 1),
+    "all but its end": (WRITER + "Writer.finish", 1),
+    "before it has its name": ("pathlib:Path.replace", 1),
+}
+"""How far the file is when the process is stopped."""
+
+
+def stopped(where, call, number, *words):
+    """Run the command until it sends itself a signal, and return its status and what it said."""
+    program = STOPPED.format(where=where, call=call, signal=number.name)
+    done = subprocess.run(
+        [sys.executable, "-c", program, *map(str, words)],
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        check=False,
+    )
+    return done.returncode, done.stderr
+
+
+@pytest.fixture(name="many")
+def folder_of_many(tmp_path):
+    folder = tmp_path / "many"
     folder.mkdir()
-    out.parent.mkdir()
-    qf.write_motion(folder / "0.npz", walk(seconds=30))
+    qf.write_motion(folder / "0.npz", walk(seconds=2))
     data = (folder / "0.npz").read_bytes()
-    for number in range(1, 60):
+    for number in range(1, 6):
         (folder / f"{number}.npz").write_bytes(data)
+    (tmp_path / "out").mkdir()
+    return folder
+
+
+def test_a_killed_build_leaves_the_old_file_or_none(many, tmp_path):
+    out = tmp_path / "out" / "db"
+    build = ("database", "build", many, "-o", out)
     old = None
     for with_old_file in (False, True):
         if with_old_file:
-            run("database", "build", folder / "0.npz", "-o", out)
+            run("database", "build", many / "0.npz", "-o", out)
             old = out.read_bytes()
             assert len(names(out.parent)) == 1, "what was killed is still there"
-        for seconds in (0.0, 0.05, 0.3):
-            process = subprocess.Popen([*COMMAND, "database", "build", str(folder), "-o", str(out)])
-            while not list(out.parent.glob(".*.unfinished")) and process.poll() is None:
-                time.sleep(0.002)
-            time.sleep(seconds)
-            process.kill()
-            assert process.wait() == -signal.SIGKILL, "done before it was killed"
+        for moment in MOMENTS.values() if with_old_file else [MOMENTS["all but its end"]]:
+            assert stopped(*moment, signal.SIGKILL, *build) == (-signal.SIGKILL, "")
             assert out.exists() == with_old_file
             assert not with_old_file or out.read_bytes() == old
             # One at most: each build removes what the one before left.
             assert len(list(out.parent.glob(".*.unfinished"))) == 1
-    run("database", "build", folder / "0.npz", "-o", out)
+    run("database", "build", many / "0.npz", "-o", out)
     assert out.read_bytes() == old
     assert names(out.parent) == ["db"]
 
 
 def test_what_a_killed_build_with_a_graph_left_is_removed_by_the_next(takes, tmp_path):
     out = tmp_path / "db"
+    build = ("database", "build", takes, "-o", out)
+    graph = "quatfilt.reconstruction.database.database:MotionDatabase.build_graph"
     with folder_beside(str(out)) as busy:
         (busy / "db").touch()
-        process = subprocess.Popen([*COMMAND, "database", "build", str(takes), "-o", str(out), "--graph"])
-        while len(names(tmp_path)) == 1 and process.poll() is None:
-            time.sleep(0.001)
-        process.kill()
-        assert process.wait() == -signal.SIGKILL, "done before it was killed"
+        assert stopped(graph, 1, signal.SIGKILL, *build, "--graph") == (-signal.SIGKILL, "")
         assert len(names(tmp_path)) == 2, "a folder of each"
         assert not out.exists()
-        run("database", "build", takes, "-o", out)
+        run(*build)
         # What somebody else is at work in stays.
         assert names(tmp_path) == sorted([busy.name, "db"])
     assert names(tmp_path) == ["db"]
 
 
-def test_an_interrupted_build_cleans_up(tmp_path):
-    folder, out = tmp_path / "many", tmp_path / "out" / "db"
-    folder.mkdir()
-    out.parent.mkdir()
-    qf.write_motion(folder / "0.npz", walk(seconds=30))
-    data = (folder / "0.npz").read_bytes()
-    for number in range(1, 60):
-        (folder / f"{number}.npz").write_bytes(data)
-    process = subprocess.Popen(
-        [*COMMAND, "database", "build", str(folder), "-o", str(out)], stderr=subprocess.PIPE, text=True
-    )
-    while not list(out.parent.iterdir()) and process.poll() is None:
-        time.sleep(0.002)
-    time.sleep(0.1)
-    process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=60)
-    assert (process.returncode, said) == (130, "quatfilt: interrupted\n")
+@pytest.mark.parametrize("moment", ["some of the clips", "all rotations"])
+def test_an_interrupted_build_cleans_up(many, tmp_path, moment):
+    out = tmp_path / "out" / "db"
+    ended = stopped(*MOMENTS[moment], signal.SIGINT, "database", "build", many, "-o", out)
+    assert ended == (130, "quatfilt: interrupted\n")
     assert list(out.parent.iterdir()) == []
 
 

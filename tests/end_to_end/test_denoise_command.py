@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 import quatfilt as qf
-from commands import run
+from commands import refused, run
 from quatfilt.cli import main
 from quatfilt.evaluation.synthetic import walk
 from quatfilt.methods import FILTERS
@@ -256,3 +256,29 @@ def test_a_picture_without_matplotlib_is_refused_before_any_work(folder, tmp_pat
     done = run(*words, status=2, PYTHONPATH=str(tmp_path))
     assert done.stderr == "quatfilt: pictures need matplotlib: pip install 'quatfilt[plot]'\n"
     assert not (tmp_path / "o.npz").exists()
+
+
+@pytest.mark.parametrize("feet", ["keep", "lock", "none"])
+def test_feet(folder, tmp_path, feet):
+    output = tmp_path / "out.npz"
+    words = ("-o", output, "--method", "gaussian", "--option", "sigma=0.03", "--feet", feet)
+    noisy = qf.read_motion(folder / "noisy.npz")
+    placement = None if feet == "none" else feet
+    told = json.loads(run("denoise", folder / "noisy.npz", *words, "--report", "-", "--json").stdout)
+    same(output, qf.denoise(noisy, method="gaussian", sigma=0.03, feet=placement))
+    if placement is None:
+        assert told["feet"] is None
+        assert told["report"]["placed"] is None
+        return
+    assert told["feet"]["placement"] == feet
+    assert told["feet"]["slide_after"] < told["feet"]["slide_filtered"]
+    assert 0 < told["feet"]["turned_max"] == told["report"]["placed"]["turned_max"]
+    assert told["feet"]["joint"] in noisy.skeleton.names
+    text = run("denoise", folder / "noisy.npz", *words, "--report", "-").stdout
+    assert {"keep": "feet kept: slide ", "lock": "feet locked: slide "}[feet] in text
+    assert "Feet: joints were turned in " in text
+
+
+def test_other_words_for_feet_are_refused(folder, tmp_path):
+    said = refused("denoise", folder / "noisy.npz", "-o", tmp_path / "out.npz", "--feet", "hold")
+    assert "--feet: expected one of 'keep', 'lock', 'none', got 'hold'" in said

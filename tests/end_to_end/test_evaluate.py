@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from patience import PATIENCE
 from quatfilt.cli import main
 from quatfilt.evaluation.synthetic import walk
 
@@ -66,7 +67,7 @@ def test_figures_are_drawn_by_a_process_of_its_own(verb, says, tmp_path):
             cwd=tmp_path,
             env={**os.environ, "PYTHONIOENCODING": "utf-8"},
             check=False,
-            timeout=120,
+            timeout=PATIENCE,
         )
         assert done.returncode == 0, done.stderr
         assert done.stderr == ""
@@ -92,7 +93,7 @@ def test_compression_is_measured(tmp_path, capsys, monkeypatch):
     assert (tmp_path / "results" / "compression.png").read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.parametrize("verb", ["nlpm-table1", "smooth-goal"])
+@pytest.mark.parametrize("verb", ["nlpm-table1", "smooth-goal", "robust-denoising"])
 def test_without_pywavelets_a_verb_says_what_to_install(verb, tmp_path, capsys, monkeypatch):
     monkeypatch.setitem(sys.modules, "pywt", None)
     monkeypatch.chdir(tmp_path)
@@ -101,7 +102,9 @@ def test_without_pywavelets_a_verb_says_what_to_install(verb, tmp_path, capsys, 
     assert not any(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("verb", ["nlpm-table1", "bilateral-figs", "pga-figs", "smooth-goal"])
+@pytest.mark.parametrize(
+    "verb", ["nlpm-table1", "bilateral-figs", "pga-figs", "smooth-goal", "robust-denoising"]
+)
 @pytest.mark.parametrize(
     ("words", "message"),
     [
@@ -125,3 +128,37 @@ def test_the_goal_is_measured_for_methods_that_there_are(tmp_path, capsys, monke
     monkeypatch.chdir(tmp_path)
     assert main(["evaluate", "smooth-goal", "--method", "magic"]) == 2
     assert "--method: expected one of 'auto'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["--kinds", "white,pink"], "--kinds: expected one of 'white', 'ar5'"),
+        (["--clips", "02_06,99_99"], "--clips: expected one of '02_06'"),
+    ],
+)
+def test_the_noise_of_trackers_has_kinds_and_clips_that_there_are(
+    words, message, tmp_path, capsys, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    assert main(["evaluate", "robust-denoising", *words]) == 2
+    assert message in capsys.readouterr().err
+    assert not any(tmp_path.iterdir())
+
+
+@pytest.mark.usefixtures("one_second")
+def test_kinds_of_noise_can_be_chosen(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words = ["evaluate", "robust-denoising", "--seeds", "1", "--workers", "1", "--kinds", "steps,held"]
+    assert main([*words, "-o", "results"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "PSNR less that of the better of kalman and a 6 Hz Butterworth filter, dB"
+    assert [line.split()[0] for line in lines if line.strip().startswith(("held", "steps"))] == [
+        "held",
+        "steps",
+    ]
+    numbers = json.loads((tmp_path / "results" / "robust-denoising.json").read_text("utf-8"))
+    assert list(numbers["kinds"]) == ["held", "steps"]
+    assert numbers["command"] == "quatfilt evaluate robust-denoising --seeds 1 --kinds steps,held"
+    assert numbers["command"] in (tmp_path / "results" / "robust-denoising.md").read_text("utf-8")
+    assert (tmp_path / "results" / "robust-denoising.png").read_bytes().startswith(b"\x89PNG")

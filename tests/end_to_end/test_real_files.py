@@ -7,6 +7,7 @@ import sys
 import numpy as np
 import pytest
 import quatfilt as qf
+from patience import PATIENCE
 from quatfilt.filters import despike
 
 COMMAND = [sys.executable, "-m", "quatfilt"]
@@ -19,7 +20,7 @@ def run(*arguments):
         text=True,
         encoding="utf-8",
         check=False,
-        timeout=200,
+        timeout=PATIENCE,
     )
     assert (done.returncode, done.stderr) == (0, "")
     return json.loads(done.stdout)
@@ -98,7 +99,7 @@ def test_a_broken_file_is_refused_with_its_line(data_dir):
         text=True,
         encoding="utf-8",
         check=False,
-        timeout=60,
+        timeout=PATIENCE,
     )
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 import quatfilt as qf
 from drawn import dtypes, seeds, spoilt_clips
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from plugins.properties import examples
 
 SMALL = {
     "lengths": st.sampled_from([0, 1, 2, 3, 5, 33, 64, 200]),
@@ -33,7 +34,7 @@ def within(q, tolerance, **options):
     return small
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(
     q=spoilt_clips(**SMALL),
     tolerance=st.sampled_from([1e-12, 1e-6, 1e-3, 0.02, 1.0, 10.0]),
@@ -52,7 +53,7 @@ def test_of_a_tolerance_below_all_roundings_samples_stay_as_they_are(backend, qu
     np.testing.assert_array_equal(np.abs(back), np.abs(q))
 
 
-@settings(max_examples=10)
+@examples(10)
 @given(seed=seeds, dtype=dtypes, tolerance=st.sampled_from([1e-5, np.radians(0.1), 0.2]))
 def test_it_holds_for_noise_without_a_mean(backend, seed, dtype, tolerance):
     assert backend.compress

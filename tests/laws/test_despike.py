@@ -6,8 +6,9 @@ import pytest
 import quatfilt as qf
 import tolerances
 from drawn import dtypes, seeds
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from plugins.properties import examples
 from quatfilt.filters import despike
 
 RADIUS = 3
@@ -19,14 +20,14 @@ REACH = 3 * RADIUS
 AXIS = np.array([2.0, -1, 2]) / 3
 
 
-slow = settings(max_examples=12)
+slow = examples(12)
 """The reference looks at each run by itself."""
 
 
-def found_in(backend, x, *, confidence=None, radius=RADIUS, threshold=4.0, smallest=SMALLEST):
+def found_in(backend, x, *, confidence=None, radius=RADIUS, threshold=4.0, smallest=SMALLEST, longest=0):
     noise = np.asarray(backend.noise_level(x), np.float64)
     limits = np.full(x.shape[1], float(smallest))
-    return backend.find_spikes(x, confidence, noise, limits, radius, threshold)
+    return backend.find_spikes(x, confidence, noise, limits, radius, threshold, longest)
 
 
 def about_axis(angles):
@@ -135,6 +136,144 @@ def test_spikes_are_larger_than_the_smallest(backend):
     assert found_in(backend, q, smallest=0.21).sum() == 0
 
 
+# ---- bursts
+
+LONGEST = 11
+LONG = np.arange(110)
+"""Frames of clips that bursts lie in."""
+
+
+def calm_clip(rng, noise=0.002):
+    """Return one joint that swings by 30 degrees, at most 2 degrees in a frame."""
+    return clips.noisy(rng, about_axis(0.5 * np.sin(LONG / 14)), noise)
+
+
+@pytest.mark.parametrize("noise", [0, 0.01])
+@pytest.mark.parametrize("length", [3, 8, LONGEST])
+def test_displaced_runs_are_bursts(backend, length, noise):
+    rng = np.random.default_rng(length)
+    clean = calm_clip(rng, noise)
+    q = turned(clean, slice(60, 60 + length), 0, [0.3, 0.5, -0.4])
+    found = found_in(backend, q, longest=LONGEST)
+    np.testing.assert_array_equal(np.flatnonzero(found), np.arange(60, 60 + length))
+    assert not found_in(backend, q, longest=length - 1).any()
+
+
+def test_a_burst_beside_another_is_found_once_the_shorter_one_is(backend):
+    clean = calm_clip(np.random.default_rng(10))
+    q = turned(clean, slice(60, 64), 0, [0.6, 0, 0])
+    q = turned(q, slice(70, 80), 0, [0, 0.6, 0])
+    expected = [*range(60, 64), *range(70, 80)]
+    assert np.flatnonzero(found_in(backend, q, longest=LONGEST)).tolist() == expected
+
+
+QUICK = {
+    "claps at 4 Hz, 30 fps": 1.0 * np.sin(2 * np.pi * 4 * LONG / 30 + 0.3),
+    "claps at 4 Hz, 60 fps": 1.0 * np.sin(2 * np.pi * 4 * LONG / 60 + 0.3),
+    "claps at 4 Hz, 120 fps": 1.5 * np.sin(2 * np.pi * 4 * LONG / 120 + 0.3),
+    "kick and back, 30 fps": 1.8 * np.exp(-(((LONG - 60) / 2.5) ** 2)),
+    "kick that is held": 0.75 * (np.tanh((LONG - 50) / 1.5) - np.tanh((LONG - 60) / 1.5)),
+    "states that take turns": 0.9 * (LONG // 7 % 2),
+    "held frames": 1.5 * np.sin(LONG // 5 * 5 / 12),
+    "held frames, irregular": 1.5 * np.sin(np.maximum.accumulate(LONG * (LONG % 13 % 5 == 0)) / 12),
+    "teleports between held poses": np.repeat(np.array([0, 1, 0.1, 2, 1.1]), 22),
+    "step": np.where(LONG < 50, 0.0, 1.2),
+}
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_quick_motion_and_held_frames_are_no_bursts(backend, name):
+    q = about_axis(QUICK[name])
+    if "held" not in name:
+        q = clips.noisy(np.random.default_rng(11), q, 0.002)
+    # A radius of 2 leaves runs of two samples to the search for bursts too.
+    assert not found_in(backend, q, radius=2, longest=45).any()
+
+
+@slow
+@given(seed=seeds)
+def test_bursts_in_any_frame_sign_and_direction_of_time(backend, seed):
+    rng = np.random.default_rng(seed)
+    q = turned(calm_clip(rng), slice(50, 57), 0, [0.3, 0.5, -0.4])
+    found = found_in(backend, q, longest=LONGEST)
+    assert found.sum() == 7
+    a, b = clips.random_rotations(rng, 2)
+    moved = clips.flipped(rng, clips.product(a, clips.product(q, b)))
+    np.testing.assert_array_equal(found, found_in(backend, moved, longest=LONGEST))
+    backwards = found_in(backend, np.ascontiguousarray(q[::-1]), longest=LONGEST)
+    np.testing.assert_array_equal(found, backwards[::-1])
+
+
+# ---- swaps
+
+
+def legs(rng, noise=0.002):
+    """Return four joints: two legs that swing against each other, and a knee of each."""
+    swing = 0.6 * np.sin(LONG / 7)
+    angles = np.stack([swing, -swing, 0.8 + 0.3 * swing, 0.2 - 0.3 * swing], axis=1)
+    return clips.noisy(rng, clips.from_vectors(angles[..., None] * AXIS), noise)
+
+
+def swaps_in(backend, q, *, confidence=None, longest=LONGEST):
+    noise, smallest = np.full(q.shape[1], 0.002), np.full(q.shape[1], SMALLEST)
+    return backend.find_swaps(q, confidence, noise, smallest, 4.0, longest).tolist()
+
+
+@pytest.mark.parametrize("length", [1, 3, 7, LONGEST])
+def test_joints_that_change_places(backend, length):
+    clean = legs(np.random.default_rng(12))
+    q = clean.copy()
+    q[50 : 50 + length] = q[50 : 50 + length, [1, 0, 3, 2]]
+    end = 50 + length
+    assert swaps_in(backend, q) == [[0, 1, 50, end], [2, 3, 50, end]]
+    assert swaps_in(backend, clean) == []
+    assert swaps_in(backend, q, longest=length - 1) == []
+    trust = np.ones(q.shape[:2])
+    trust[49, 0] = 0
+    assert swaps_in(backend, q, confidence=trust) == [[2, 3, 50, end]]
+    backwards = swaps_in(backend, np.ascontiguousarray(q[::-1]))
+    assert backwards == [[0, 1, 110 - end, 60], [2, 3, 110 - end, 60]]
+
+
+def test_joints_that_change_places_for_good_are_left(backend):
+    q = legs(np.random.default_rng(13))
+    q[50:] = q[50:, [1, 0, 3, 2]]
+    assert swaps_in(backend, q) == []
+
+
+@pytest.mark.usefixtures("backend")
+def test_swapped_joints_get_back_what_is_theirs():
+    clean = legs(np.random.default_rng(14))
+    q = clean.copy()
+    q[50:57] = q[50:57, [1, 0, 3, 2]]
+    q[53, 1] = np.nan
+    result = qf.despike(q, fps=30)
+    expected = clean.copy()
+    expected[53, 0] = np.nan
+    np.testing.assert_array_equal(np.abs(result), np.abs(qf.despike(expected, fps=30)))
+    found = despike.spikes(q, fps=30)
+    assert found[50:57].all()
+    assert found.sum() == 4 * 7
+    assert not despike.spikes(q, fps=30, duration=0).any()
+
+
+@pytest.mark.usefixtures("backend")
+def test_without_a_frame_rate_there_are_no_bursts():
+    q = turned(calm_clip(np.random.default_rng(15)), slice(50, 57), 0, [0.3, 0.5, -0.4])
+    assert not despike.spikes(q).any()
+    assert despike.spikes(q, duration=8).sum() == 7
+    assert despike.spikes(q, fps=30).sum() == 7
+    assert not despike.spikes(q, fps=30, duration=0.2).any()
+
+
+@pytest.mark.usefixtures("backend")
+def test_lengths_become_1():
+    q = calm_clip(np.random.default_rng(16))
+    result = qf.despike(1.05 * q, fps=30)
+    assert np.abs(np.linalg.norm(result, axis=-1) - 1).max() < tolerances.ALGEBRA
+    assert clips.angles(result, q).max() < tolerances.ALGEBRA
+
+
 # ---- symmetries
 
 
@@ -181,7 +320,9 @@ def test_what_is_far_away_does_not_matter(backend):
     long = np.concatenate([q, clips.noisy(rng, np.repeat(q[-1:], far, axis=0), 0.002)])
     other = long.copy()
     other[far:] = clips.random_rotations(rng, len(long) - far, 3)
-    first, second = (backend.find_spikes(x, None, noise, smallest, RADIUS, 4.0)[:30] for x in (long, other))
+    first, second = (
+        backend.find_spikes(x, None, noise, smallest, RADIUS, 4.0, 0)[:30] for x in (long, other)
+    )
     assert first.any()
     np.testing.assert_array_equal(first, second)
 
@@ -204,7 +345,8 @@ def test_samples_without_confidence_do_not_matter(backend, seed):
     other = np.where(trust[..., None] == 0, clips.random_rotations(rng, *q.shape[:2]), q)
     noise, smallest = np.full(3, 0.002), np.full(3, SMALLEST)
     first, second = (
-        backend.find_spikes(x, trust, noise, smallest, RADIUS, 4.0) for x in (q, np.ascontiguousarray(other))
+        backend.find_spikes(x, trust, noise, smallest, RADIUS, 4.0, 0)
+        for x in (q, np.ascontiguousarray(other))
     )
     np.testing.assert_array_equal(first, second)
     assert not first[trust == 0].any()
@@ -290,7 +432,8 @@ def test_samples_without_confidence_are_replaced():
     wild = q.copy()
     wild[10:14, 1] = clips.random_rotations(rng, 4)
     wild[0, 2] *= -1
-    np.testing.assert_array_equal(result, qf.despike(wild, confidence=trust))
+    # The first sample still says in which hemisphere the result begins.
+    np.testing.assert_array_equal(np.abs(result), np.abs(qf.despike(wild, confidence=trust)))
     # Nothing could replace a joint that is trusted nowhere.
     np.testing.assert_array_equal(np.abs(result[:, 0]), np.abs(q[:, 0]))
 

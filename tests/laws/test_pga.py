@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 import quatfilt as qf
 import tolerances
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from plugins.properties import examples
 from scipy.spatial.transform import Rotation
 
 OBJECTIVES = ["geodesic", "squared", "chordal"]
@@ -29,7 +30,7 @@ def turned(q, vectors):
     return clips.rotation(q).apply(np.reshape(vectors, (-1, 3))).reshape(np.shape(vectors))
 
 
-@settings(max_examples=6)
+@examples(6)
 @given(seed=seeds, objective=st.sampled_from(OBJECTIVES))
 def test_rotations_on_both_sides_turn_the_result(backend, seed, objective):  # noqa: ARG001 - a backend
     rng = np.random.default_rng(seed)
@@ -46,7 +47,7 @@ def test_rotations_on_both_sides_turn_the_result(backend, seed, objective):  # n
     np.testing.assert_allclose(moved.residuals_, plain.residuals_, rtol=0, atol=tolerances.FLOAT64)
 
 
-@settings(max_examples=6)
+@examples(6)
 @given(seed=seeds, objective=st.sampled_from(OBJECTIVES))
 def test_neither_signs_nor_missing_samples_matter(backend, seed, objective):  # noqa: ARG001
     rng = np.random.default_rng(seed)
@@ -66,7 +67,7 @@ def test_neither_signs_nor_missing_samples_matter(backend, seed, objective):  # 
     assert np.isnan(other.inverse_transform(other.transform(spoilt))[missing]).all()
 
 
-@settings(max_examples=6)
+@examples(6)
 @given(seed=seeds, objective=st.sampled_from(OBJECTIVES))
 def test_what_is_left_falls_and_is_the_mean_error(backend, seed, objective):  # noqa: ARG001
     q = cloud(np.random.default_rng(seed), spread=0.5)
@@ -90,7 +91,7 @@ def test_what_is_left_falls_and_is_the_mean_error(backend, seed, objective):  # 
 
 
 @given(seed=seeds)
-@settings(max_examples=4)
+@examples(4)
 def test_any_tolerance_is_reached(backend, seed):  # noqa: ARG001
     q = cloud(np.random.default_rng(seed), spread=0.5)
     for tolerance in (0.1, 1e-3, 1e-9):
@@ -102,7 +103,7 @@ def test_any_tolerance_is_reached(backend, seed):  # noqa: ARG001
 
 
 @given(seed=seeds)
-@settings(max_examples=6)
+@examples(6)
 def test_axes_are_unit_across_the_one_before_and_signed_by_the_samples(backend, seed):  # noqa: ARG001
     q = cloud(np.random.default_rng(seed))
     pga = fit(q, 4)

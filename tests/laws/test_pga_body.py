@@ -6,8 +6,9 @@ import pytest
 import quatfilt as qf
 import tolerances
 from drawn import seeds
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from plugins.properties import examples
 
 OBJECTIVES = ["geodesic", "squared", "chordal"]
 
@@ -55,7 +56,7 @@ def test_poses_on_a_geodesic_leave_nothing(objective):
     assert clips.angles(pga.inverse_transform(pga.transform(q)), q).max() < tolerances.FLOAT64
 
 
-@settings(max_examples=10)
+@examples(10)
 @given(seed=seeds, objective=st.sampled_from(OBJECTIVES))
 def test_one_joint_is_a_body(seed, objective):
     q, _ = swings(seed, joints=1)
@@ -66,7 +67,7 @@ def test_one_joint_is_a_body(seed, objective):
     np.testing.assert_allclose(body.transform(q), joint.transform(q)[:, 0], atol=tolerances.DIRECTION)
 
 
-@settings(max_examples=10)
+@examples(10)
 @given(seed=seeds, objective=st.sampled_from(OBJECTIVES))
 def test_a_joint_that_hardly_moves_hardly_matters(seed, objective):
     """The general way, which no formula of one joint takes part in, leads to the geodesic of the joint that moves."""
@@ -77,7 +78,7 @@ def test_a_joint_that_hardly_moves_hardly_matters(seed, objective):
     np.testing.assert_allclose(body.residuals_, joint.residuals_[:, 0], atol=1e-6)
 
 
-@settings(max_examples=10)
+@examples(10)
 @given(seed=seeds)
 def test_signs_do_not_matter_and_frames_of_reference_turn_along(seed):
     q, rng = swings(seed)
@@ -92,7 +93,7 @@ def test_signs_do_not_matter_and_frames_of_reference_turn_along(seed):
     np.testing.assert_allclose(turned.residuals_, plain.residuals_, atol=tolerances.FLOAT64)
 
 
-@settings(max_examples=10)
+@examples(10)
 @given(seed=seeds, joints=st.integers(2, 6))
 def test_no_worse_than_the_tangent_axis_and_never_rising(seed, joints):
     q, _ = swings(seed, joints)
@@ -107,7 +108,7 @@ def test_no_worse_than_the_tangent_axis_and_never_rising(seed, joints):
     assert (np.diff(pga.descent_, axis=1)[np.isfinite(pga.descent_[:, 1:])] <= 0).all()
 
 
-@settings(max_examples=20)
+@examples(20)
 @given(seed=seeds, joints=st.integers(2, 5), spread=st.sampled_from([0.3, 1.5, 3.1]))
 def test_projections_are_the_nearest_points(backend, seed, joints, spread):
     """Also of poses far from the geodesic, where the distance along it has several minima."""

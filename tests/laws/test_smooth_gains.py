@@ -11,6 +11,7 @@ import tolerances
 from drawn import dtypes, seeds
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from quatfilt import _core
 from quatfilt.filters._gains import FILE, weights
 
 FEW = settings(max_examples=8)
@@ -177,9 +178,9 @@ def test_real_clips_are_estimated_better_than_by_low_rank(backend, data_dir):
         clean = np.ascontiguousarray(clean[:300])
         q = qf.add_gaussian_noise(clean, sigma=0.016, rng=1)
         noise = qf.noise_level(q)
-        smoothed, _ = backend.smooth(q, None, None, noise, 0.0)
-        patches = backend.smooth_patches(q, backend.smooth_body(q, smoothed, None, noise), None, noise, 1)
-        pilot = backend.smooth_rank(q, patches, None, noise)
+        smoothed, _ = _core.smooth(q, None, None, noise, 0.0)
+        patches = _core.smooth_patches(q, _core.smooth_body(q, smoothed, None, noise), None, noise, 1)
+        pilot = _core.smooth_rank(q, patches, None, noise)
         result = backend.smooth_gains(q, patches, pilot, None, noise, 1.0, *weights())
         gains.append(qf.metrics.psnr(clean, result) - qf.metrics.psnr(clean, pilot))
     assert min(gains) > 0.1

@@ -6,10 +6,11 @@ import pytest
 import quatfilt as qf
 import tolerances
 from drawn import dtypes, seeds
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from plugins.properties import examples
 
-FEW = settings(max_examples=10)
+FEW = examples(10)
 """A clip has to be long for patches to be alike."""
 
 SHORTEST = 103

@@ -234,3 +234,25 @@ def test_nothing_is_written(motions):
     before = [motion.rotations.tobytes() for motion in motions]
     qf.report(motions[0], motions[1], reference=motions[2])
     assert [motion.rotations.tobytes() for motion in motions] == before
+
+
+def test_what_held_the_feet_is_told(motions):
+    noisy, _, truth = motions
+    filtered = qf.denoise(noisy, method="gaussian", sigma=0.03, feet=None)
+    kept = qf.denoise(noisy, method="gaussian", sigma=0.03)
+    told = qf.report(noisy, kept, filtered=filtered, reference=truth).placed
+    turned = np.asarray(qf.metrics.angle_error(filtered.rotations, kept.rotations, per="sample"))
+    frame, joint = np.unravel_index(np.argmax(turned), turned.shape)
+    assert (told.joint, told.frame, told.turned_max) == (truth.skeleton.names[joint], frame, turned.max())
+    assert told.frames == (turned > 0).any(axis=1).sum()
+    assert f"by at most {told.turned_max:.2f}°" in str(qf.report(noisy, kept, filtered=filtered))
+    assert "no joint was turned" in str(qf.report(noisy, filtered, filtered=filtered))
+    assert qf.report(noisy, kept).placed is None
+    with pytest.raises(ValueError, match="filtered: expected the shape of"):
+        qf.report(
+            noisy,
+            kept,
+            filtered=truth.replace(rotations=truth.rotations[:5], translation=truth.translation[:5]),
+        )
+    with pytest.raises(TypeError, match="filtered: expected None with rotations"):
+        qf.report(noisy.rotations, kept.rotations, filtered=filtered)

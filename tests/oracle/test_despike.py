@@ -98,5 +98,5 @@ def example(seed, radius, threshold):
 def test_direct_search(backend, seed, radius, threshold):
     q, found = example(seed, radius, threshold)
     assert found
-    result = backend.find_spikes(q, None, np.array([0.004]), np.array([0.05]), radius, threshold)
+    result = backend.find_spikes(q, None, np.array([0.004]), np.array([0.05]), radius, threshold, 0)
     assert set(np.flatnonzero(result[:, 0]).tolist()) == found

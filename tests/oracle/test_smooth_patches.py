@@ -15,22 +15,23 @@ def directly(q, pilot, sigma):
     clean = np.vstack([np.zeros(3), np.cumsum(turns, axis=0)]) / sigma
     rest = (r.inv() * noisy).as_rotvec() / sigma
     count = len(q) - 23
-    spectrum = [dct(clean[s : s + 24], axis=0, norm="ortho")[:10].ravel() for s in range(count)]
+    spectrum = [dct(clean[s : s + 24], axis=0, norm="ortho")[:8].ravel() for s in range(count)]
     sums, held = np.zeros_like(clean), np.zeros(len(q))
-    for s in sorted({*range(0, count, 8), count - 1}):
+    for s in sorted({*range(0, count - 1, 24), count - 1}):
         window = [c for c in range(count) if abs(c - s) <= 256]
         window.sort(key=lambda c: (np.linalg.norm(spectrum[c] - spectrum[s]), abs(c - s), c))
         group = np.array([spectrum[c] for c in window[:80]])
-        values, vectors = np.linalg.eigh(0.75 * np.cov(group.T, bias=True))
-        noisy_patch = spectrum[s] + dct(rest[s : s + 24], axis=0, norm="ortho")[:10].ravel()
         mean = group.mean(axis=0)
+        values, vectors = np.linalg.eigh(0.75 * np.cov(group.T, bias=True))
         values = np.maximum(values, 0)
         gains = values / (values + 1 + 1e-13 * values.sum())
-        estimate = mean + vectors @ (gains * (vectors.T @ (noisy_patch - mean)))
-        move = np.zeros((24, 3))
-        move[:10] = (estimate - spectrum[s]).reshape(10, 3)
-        sums[s : s + 24] += idct(move, axis=0, norm="ortho")
-        held[s : s + 24] += 1
+        for near in (c for c in window[:80] if abs(c - s) <= 21 and (c - s) % 3 == 0):
+            noisy_patch = spectrum[near] + dct(rest[near : near + 24], axis=0, norm="ortho")[:8].ravel()
+            estimate = mean + vectors @ (gains * (vectors.T @ (noisy_patch - mean)))
+            move = np.zeros((24, 3))
+            move[:8] = (estimate - spectrum[near]).reshape(8, 3)
+            sums[near : near + 24] += idct(move, axis=0, norm="ortho")
+            held[near : near + 24] += 1
     return (r * Rotation.from_rotvec(sigma * sums / held[:, None])).as_quat(scalar_first=True)
 
 

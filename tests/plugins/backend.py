@@ -2,14 +2,10 @@
 
 import pytest
 import quatfilt as qf
-from hypothesis import settings
 from quatfilt import _backend, _core, _reference
 
 CORE_IS_COMPLETE = set(_reference.__all__) <= set(dir(_core))
 """The contract's test of the two surfaces fails as long as this does not hold."""
-
-settings.register_profile("quatfilt", deadline=None, derandomize=True, max_examples=40)
-settings.load_profile("quatfilt")
 
 
 @pytest.fixture(scope="module", params=["numpy", "rust"] if CORE_IS_COMPLETE else ["numpy"])

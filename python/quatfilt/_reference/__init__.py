@@ -12,7 +12,7 @@ or with four zeros.
 from quatfilt._reference.filters.bilateral import bilateral
 from quatfilt._reference.filters.butterworth import butterworth
 from quatfilt._reference.filters.confidence import trusted
-from quatfilt._reference.filters.despike import find_spikes
+from quatfilt._reference.filters.despike import find_spikes, find_swaps
 from quatfilt._reference.filters.development import develop, undevelop
 from quatfilt._reference.filters.gaps import fill_gaps
 from quatfilt._reference.filters.gaussian import gaussian
@@ -25,6 +25,7 @@ from quatfilt._reference.filters.orientation_filter import orientation_filter
 from quatfilt._reference.filters.savgol import savgol, savgol_derivative
 from quatfilt._reference.filters.smooth.body import smooth_body
 from quatfilt._reference.filters.smooth.gains import smooth_gains
+from quatfilt._reference.filters.smooth.low_pass import low_pass
 from quatfilt._reference.filters.smooth.patches import smooth_patches
 from quatfilt._reference.filters.smooth.rank import smooth_rank
 from quatfilt._reference.filters.smooth.smooth import smooth
@@ -35,8 +36,17 @@ from quatfilt._reference.geodesics.compress.frames import principal_frames
 from quatfilt._reference.geodesics.pga.centre import geodesic_centre
 from quatfilt._reference.geodesics.pga.pga import geodesic_product, geodesic_scores, principal_geodesics
 from quatfilt._reference.geodesics.segment import segment
+from quatfilt._reference.motion.feet.displacements import foot_displacements
+from quatfilt._reference.motion.feet.place import place_feet
 from quatfilt._reference.motion.skeleton import forward_kinematics, forward_kinematics_moving
+from quatfilt._reference.noise.along_time import noise_along_time
+from quatfilt._reference.noise.axes import noise_axes
+from quatfilt._reference.noise.colour import noise_colour
+from quatfilt._reference.noise.motion import noise_over_motion
 from quatfilt._reference.noise.noise import noise_level
+from quatfilt._reference.noise.outliers import drawn_towards
+from quatfilt._reference.noise.repeats import find_repeats
+from quatfilt._reference.noise.whiten import unwhiten, whiten
 from quatfilt._reference.reconstruction.features import pose_features
 from quatfilt._reference.reconstruction.heading import split_heading
 from quatfilt._reference.reconstruction.local_models.predict import predict_pose
@@ -55,6 +65,9 @@ from quatfilt._reference.rotations.quaternion import (
     scan,
 )
 from quatfilt._reference.rotations.resample import slerp
+from quatfilt._reference.sampling.sampling import sampling
+from quatfilt._reference.sampling.spline import knots, spline
+from quatfilt._reference.sampling.tracker_noise import tracker_noise
 from quatfilt._reference.search.patch_neighbors import patch_neighbors
 from quatfilt._reference.search.poses import nearest_segments, neighbor_graph
 from quatfilt._reference.search.walk import segment_walk
@@ -71,9 +84,13 @@ __all__ = [
     "continuous_euler",
     "decompress",
     "develop",
+    "drawn_towards",
     "exp",
     "fill_gaps",
+    "find_repeats",
     "find_spikes",
+    "find_swaps",
+    "foot_displacements",
     "forward_kinematics",
     "forward_kinematics_moving",
     "from_euler",
@@ -86,21 +103,29 @@ __all__ = [
     "kalman_process_noise",
     "kalman_vectors",
     "kalman_vectors_ratio",
+    "knots",
     "log",
+    "low_pass",
     "mean",
     "multiply",
     "nearest_segments",
     "neighbor_graph",
+    "noise_along_time",
+    "noise_axes",
+    "noise_colour",
     "noise_level",
+    "noise_over_motion",
     "nonlocal_pose_means",
     "normalize",
     "one_euro",
     "orientation_filter",
     "patch_neighbors",
+    "place_feet",
     "pose_features",
     "predict_pose",
     "principal_frames",
     "principal_geodesics",
+    "sampling",
     "savgol",
     "savgol_derivative",
     "scan",
@@ -113,10 +138,14 @@ __all__ = [
     "smooth_patches",
     "smooth_rank",
     "solve_pose",
+    "spline",
     "split_heading",
     "to_euler",
     "track",
+    "tracker_noise",
     "trusted",
     "undevelop",
+    "unwhiten",
     "weighted_moving_mean",
+    "whiten",
 ]

@@ -11,8 +11,13 @@ _WIDEST_INTEGERS = "biu"
 
 
 def floats(value: Any, name: str) -> Array:
-    """Return `value` as a native float32 or float64 array, without a copy where it already is one."""
-    if _is_rotation(value):  # SciPy's, scalar last
+    """Return `value` as a native float32 or float64 array, without a copy where it already is one.
+
+    Masked elements become NaN.
+    """
+    if isinstance(value, np.ma.MaskedArray):
+        value = _unmasked(value)
+    elif _is_rotation(value):  # SciPy's, scalar last
         value = np.roll(value.as_quat(), 1, axis=-1)
     elif hasattr(value, "__dlpack__") and not hasattr(value, "__array__"):
         value = np.from_dlpack(value)
@@ -28,6 +33,13 @@ def floats(value: Any, name: str) -> Array:
         came = "None" if value is None else f"dtype {array.dtype}"
         raise TypeError(f"{name}: expected real numbers, got {came}")
     return np.require(array, dtype, ("C_CONTIGUOUS", "ALIGNED"))
+
+
+def _unmasked(array: "np.ma.MaskedArray[Any, Any]") -> Any:
+    """Return a masked array as an array of floats, with NaN for what is masked."""
+    if array.dtype.kind in _WIDEST_INTEGERS:
+        return array.astype(np.float64).filled(np.nan)
+    return array.filled(np.nan) if array.dtype.kind == "f" else array.data
 
 
 def scalar_order(array: Array, *, scalar_first: bool) -> Array:

@@ -35,9 +35,13 @@ def pose_confidence(value: Any, joints: int) -> NDArray[np.float64] | None:
     return np.ascontiguousarray(np.broadcast_to(_shares(array), joints))
 
 
+_ROUNDING = 1e-5
+"""By how much a confidence may lie outside 0…1: sums and exponentials of float32 do."""
+
+
 def _shares(confidence: NDArray[Any]) -> NDArray[Any]:
     array = np.where(np.isnan(confidence), 0, confidence)
-    if array.size and (array.min() < 0 or array.max() > 1):
-        worst = array.min() if array.min() < 0 else array.max()
+    if array.size and (array.min() < -_ROUNDING or array.max() > 1 + _ROUNDING):
+        worst = array.min() if array.min() < -_ROUNDING else array.max()
         raise ValueError(f"confidence: expected values from 0 to 1, got {worst}")
-    return array
+    return np.clip(array, 0, 1)

@@ -15,8 +15,13 @@ def number(
     at_most: float | None = None,
     infinite: bool = False,
 ) -> float:
-    """Return `value` as a float within its bounds; finite, unless it may be `infinite`."""
+    """Return `value` as a float within its bounds; finite, unless it may be `infinite`.
+
+    An array without dimensions is a number: so are those that ``np.load`` reads.
+    """
     expected = "a number" + _bounds(above, at_least, at_most)
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        value = value[()]
     if isinstance(value, (bool, np.bool_, str)) or not np.isscalar(value):
         raise TypeError(f"{name}: expected {expected}, got {type(value).__name__}")
     try:

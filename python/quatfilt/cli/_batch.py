@@ -1,13 +1,15 @@
 """Many files, cleaned in several processes."""
 
 import contextlib
+import os
 import signal
-import threading
+import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from multiprocessing import get_context
+from multiprocessing import active_children, get_context
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any, Literal
 
@@ -58,12 +60,13 @@ def done(
             yield _clean(task, how)
         return
     # Spawned, because the threads of this process would not survive a fork.
+    others = set(active_children())
     with ProcessPoolExecutor(
-        workers, mp_context=get_context("spawn"), initializer=_backend.set_num_threads, initargs=(threads,)
+        workers, mp_context=get_context("spawn"), initializer=_begin, initargs=(threads,)
     ) as pool:
-        with _deaf():
-            running = {pool.submit(_clean_elsewhere, task, how): task for task in waiting}
         try:
+            with _held_back():
+                running = {pool.submit(_clean_elsewhere, task, how): task for task in waiting}
             for future in as_completed(running):
                 try:
                     yield future.result()
@@ -72,29 +75,70 @@ def done(
                     yield _record(task, "failed", error=f"{task.source}: {_DIED}")
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
+            _interrupt(set(active_children()) - others)
             raise
 
 
 @contextlib.contextmanager
-def _deaf() -> Iterator[None]:
-    """Start processes that do not hear Ctrl-C: they would say so, each with a traceback."""
-    if threading.current_thread() is not threading.main_thread():
+def _held_back() -> Iterator[None]:
+    """Start processes to which Ctrl-C comes when they ask for it: before, they would end with a traceback."""
+    if sys.platform == "win32":
         yield
         return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _interrupt(processes: set[BaseProcess]) -> None:
+    """Pass Ctrl-C on, in case it came to this process alone."""
+    for process in processes:
+        if sys.platform != "win32" and process.pid is not None and process.is_alive():
+            os.kill(process.pid, signal.SIGINT)
+
+
+class _Listener:
+    """Hears Ctrl-C in a process of the pool.
+
+    The pool gives processes more files than they are at work on, and does not take them back: after Ctrl-C, each of them
+    ends at once.
+    """
+
+    at_work = False
+    interrupted = False
+
+    def __call__(self, *_: object) -> None:
+        """End the work. A second Ctrl-C does not disturb the removal of temporary files."""
+        again, self.interrupted = self.interrupted, True
+        if self.at_work and not again:
+            raise KeyboardInterrupt
+
+    def __enter__(self) -> None:
+        self.at_work = True
+        if self.interrupted:
+            raise KeyboardInterrupt
+
+    def __exit__(self, *_: object) -> None:
+        self.at_work = False
+
+
+_listener = _Listener()
+
+
+def _begin(threads: int) -> None:
+    """Prepare a process of the pool."""
+    signal.signal(signal.SIGINT, _listener)
+    if sys.platform != "win32":
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    _backend.set_num_threads(threads)
 
 
 def _clean_elsewhere(task: Task, how: _cleaning.How) -> dict[str, Any]:
     """Clean a file in a process of the pool, which hears Ctrl-C while it is at work: temporary files are then removed."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    try:
+    with _listener:
         return _clean(task, how)
-    finally:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _clean(task: Task, how: _cleaning.How) -> dict[str, Any]:

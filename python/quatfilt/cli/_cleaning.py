@@ -3,7 +3,7 @@
 import contextlib
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +16,11 @@ from quatfilt.denoise import denoise
 from quatfilt.errors import FileAccessError
 from quatfilt.formats.files import write_motion
 from quatfilt.motion.defects import find_defects
-from quatfilt.motion.metrics import angle_error
+from quatfilt.motion.feet import Placement, with_feet
+from quatfilt.motion.legs import find_legs
+from quatfilt.motion.metrics import angle_error, foot_scale, foot_slide
 from quatfilt.motion.motion import Motion
+from quatfilt.motion.report import placed
 from quatfilt.noise.noise import noise_level
 from quatfilt.rotations.resample import resample
 
@@ -38,6 +41,8 @@ class How:
     confidence: Path | None = None
     library: tuple[Path, ...] = ()
     """Clean motions of the same joints, which the filters may borrow from."""
+    feet: Placement | None = "keep"
+    """What happens to feet on the ground after the filters."""
 
 
 @dataclass(frozen=True)
@@ -45,6 +50,8 @@ class Cleaned:
     """A file that was cleaned and written."""
 
     motion: Motion
+    filtered: Motion
+    """Before its feet were placed."""
     result: Motion
     record: dict[str, Any]
 
@@ -93,7 +100,10 @@ def clean(source: Path, target: Path, motion: Motion, how: How, *, busy: Busy = 
             options["library"] = [_borrowed(path, source, motion, how) for path in how.library]
     started = time.perf_counter()
     with busy(f"cleaning {source.name}"):
-        result = denoise(motion, translation=how.translation, **options)
+        filtered = denoise(motion, translation=how.translation, feet=None, **options)
+        result = filtered
+        if how.feet is not None:
+            result = with_feet(motion, filtered, how.feet, translation=how.translation)
     seconds = time.perf_counter() - started
     with busy(f"writing {target.name}"):
         write_motion(target, result)
@@ -104,7 +114,8 @@ def clean(source: Path, target: Path, motion: Motion, how: How, *, busy: Busy = 
     }
     if how.library:
         record["library"] = [str(path) for path in how.library]
-    return Cleaned(motion, result, {**record, **_measured(motion, result), "seconds": seconds})
+    measured = {**_measured(motion, result), **_feet(motion, filtered, result, how), "seconds": seconds}
+    return Cleaned(motion, filtered, result, {**record, **measured})
 
 
 def _borrowed(path: Path, source: Path, motion: Motion, how: How) -> Array:
@@ -130,6 +141,23 @@ def _measured(motion: Motion, result: Motion) -> dict[str, Any]:
         "missing_samples_left": _missing(result),
         "noise_degrees": noise,
         "change_degrees": change,
+    }
+
+
+def _feet(motion: Motion, filtered: Motion, result: Motion, how: How) -> dict[str, Any]:
+    """Return how far feet slide and joints were turned to hold them; None without legs, or where feet were left to the filter."""
+    if how.feet is None or not find_legs(motion.skeleton) or not len(motion):
+        return {"feet": None}
+    told = placed(filtered, result)
+    slides = (foot_slide(one, reference=result) for one in (motion, filtered, result))
+    names = ("slide_before", "slide_filtered", "slide_after")
+    return {
+        "feet": {
+            "placement": how.feet,
+            **{name: float(slide) for name, slide in zip(names, slides, strict=True)},
+            "scale": foot_scale(motion),
+            **asdict(told),
+        }
     }
 
 

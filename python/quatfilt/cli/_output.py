@@ -79,6 +79,9 @@ def print_report(report: Report) -> None:
     for table in text.tables(report):
         say("")
         print_table(table.columns, table.rows, title=table.title)
+    for note in text.notes(report):
+        say("")
+        say(note)
     say("")
 
 

@@ -13,6 +13,7 @@ from quatfilt._typing import Array
 from quatfilt.chain import Step, names, plan
 from quatfilt.errors import FileAccessError
 from quatfilt.methods import FILTERS, METHODS
+from quatfilt.motion.feet import PLACEMENTS, Placement
 from quatfilt.presets import PRESETS
 
 Method: TypeAlias = Annotated[
@@ -46,6 +47,28 @@ MaxGap: TypeAlias = Annotated[
 Translation: TypeAlias = Annotated[
     bool, typer.Option("--translation/--no-translation", help="Clean the path of the root too.")
 ]
+
+Feet: TypeAlias = Annotated[
+    str,
+    typer.Option(
+        "--feet",
+        metavar="keep|lock|none",
+        help="Feet on the ground: keep them as in the input, lock them to one point, or leave them to the filter.",
+    ),
+]
+
+
+def placement(word: str) -> Placement | None:
+    """Return what the word after ``--feet`` means."""
+    chosen = word.strip().lower()
+    if chosen == "none":
+        return None
+    if chosen not in PLACEMENTS:
+        raise ValueError(
+            f"--feet: expected one of {', '.join(map(repr, (*PLACEMENTS, 'none')))}, got {word!r}"
+        )
+    return _validation.choice(chosen, "--feet", PLACEMENTS)
+
 
 _WORDS: Mapping[str, Any] = {"none": None, "all": None, "true": True, "false": False}
 """Words with a meaning of their own; "all" is that of a search without a radius."""

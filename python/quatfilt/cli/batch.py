@@ -46,6 +46,7 @@ def batch(
     gaps: _steps.Gaps = None,
     max_gap: _steps.MaxGap = None,
     translation: _steps.Translation = True,
+    feet: _steps.Feet = "keep",
     to: Annotated[
         str | None,
         typer.Option(
@@ -77,7 +78,7 @@ def batch(
     """
     wish = _steps.asked(method, preset, option, {"gaps": gaps, "max_gap": max_gap})
     _steps.planned(wish)
-    how = _cleaning.How(wish, translation, fps, skeleton, first_frame)
+    how = _cleaning.How(wish, translation, fps, skeleton, first_frame, feet=_steps.placement(feet))
     tasks = found(inputs, output, to)
     count = os.cpu_count() or 1
     at_once = min(

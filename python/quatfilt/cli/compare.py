@@ -10,6 +10,7 @@ from quatfilt.cli import _options, _output
 from quatfilt.evaluation.measures import Measures, measure
 from quatfilt.motion import metrics
 from quatfilt.motion.motion import Motion
+from quatfilt.motion.report import text
 from quatfilt.motion.skeleton import Skeleton
 
 _SHOWN = 8
@@ -39,6 +40,7 @@ def compare(
     a, b = in_one_unit(a, b)
     with _output.busy("measuring"):
         measures = measure(a, b)
+        scale = metrics.foot_scale(a)
         per_joint = np.asarray(metrics.angle_error(a.rotations, b.rotations, per="joint"))
     worst: list[dict[str, Any]] = [
         {"name": a.skeleton.names[joint], "angle_mean_degrees": float(per_joint[joint])}
@@ -46,12 +48,20 @@ def compare(
     ]
     if json:
         _output.print_json(
-            {"reference": str(reference), "estimate": str(estimate), **measures.as_dict(), "joints": worst}
+            {
+                "reference": str(reference),
+                "estimate": str(estimate),
+                **measures.as_dict(),
+                "foot_scale": scale,
+                "joints": worst,
+            }
         )
         return
     _output.say(f"{estimate} against {reference}: {len(a)} frames of {len(a.skeleton)} joints")
     _output.say("")
     print_measures({"value": measures})
+    if scale != 1:
+        _output.say(text.scaled(scale))
     _output.say("")
     _output.print_table(
         ("joint", "mean angle error °"),

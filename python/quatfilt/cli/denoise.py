@@ -1,7 +1,7 @@
 """``quatfilt denoise``: a noisy file in, a clean one out."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -77,6 +77,7 @@ def denoise(
         ),
     ] = None,
     translation: _steps.Translation = True,
+    feet: _steps.Feet = "keep",
     reports: Annotated[
         list[Path] | None,
         typer.Option(
@@ -121,7 +122,10 @@ def denoise(
     _steps.planned({**wish, "library": None} if library else wish)
     wanted = reports or []
     _refuse_others(wanted)
-    how = _cleaning.How(wish, translation, fps, skeleton, first_frame, confidence, tuple(library or ()))
+    placement = _steps.placement(feet)
+    how = _cleaning.How(
+        wish, translation, fps, skeleton, first_frame, confidence, tuple(library or ()), placement
+    )
     target = output or beside(path)
     with _output.busy(f"reading {path.name}"):
         motion = _cleaning.read(path, target, how)
@@ -165,7 +169,20 @@ def _say(path: Path, target: Path, cleaned: _cleaning.Cleaned) -> None:
         f"estimated noise {record['noise_degrees']:.2g}°, turned by {record['change_degrees']:.2g}° on average, "
         f"{record['seconds']:.2g} s"
     )
+    if record["feet"] is not None:
+        _output.say(f"{path}: {_of_feet(record['feet'])}")
     _output.say(f"{target}: written")
+
+
+def _of_feet(feet: dict[str, Any]) -> str:
+    """Say how far feet slide, and by how much joints were turned to hold them."""
+    done = {"keep": "kept", "lock": "locked"}[feet["placement"]]
+    scaled = "" if feet["scale"] == 1 else f", lengths multiplied by {feet['scale']:.3g} for a leg of 90 cm"
+    return (
+        f"feet {done}: slide {feet['slide_before']:.1f} cm in the input, {feet['slide_filtered']:.1f} cm filtered, "
+        f"{feet['slide_after']:.1f} cm now{scaled}; joints turned by at most {feet['turned_max']:.2g}° "
+        f"({feet['joint']}, frame {feet['frame']})"
+    )
 
 
 def _search_radius(text: str) -> str:
@@ -186,10 +203,12 @@ def _refuse_others(reports: list[Path]) -> None:
 
 
 def _report(cleaned: _cleaning.Cleaned, truth: Motion | None) -> Report:
+    filtered = None if cleaned.record["feet"] is None else cleaned.filtered
     if truth is None:
-        return report(cleaned.motion, cleaned.result)
+        return report(cleaned.motion, cleaned.result, filtered=filtered)
     truth, before = in_one_unit(truth, cleaned.motion)
-    return report(before, cleaned.result.replace(skeleton=before.skeleton), reference=truth)
+    after = cleaned.result.replace(skeleton=before.skeleton)
+    return report(before, after, reference=truth, filtered=filtered)
 
 
 def _reference(path: Path, source: Path, motion: Motion, how: _cleaning.How) -> Motion:

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from quatfilt import sampling
 from quatfilt.cli import _options, _output
 from quatfilt.motion.defects import find_defects
 from quatfilt.motion.motion import Motion
@@ -23,7 +24,8 @@ def info(
     """Show what is in a motion file, and how noisy it is.
 
     The noise of a joint is the estimated deviation per component of its rotation vector. A spike is a sample that
-    leaves both of its neighbours; a jump is a turn of more than 15 degrees in a frame at 120 frames per second.
+    leaves both of its neighbours; a jump is a turn of more than 15 degrees in a frame at 120 frames per second. Where the
+    source did not measure every frame, its rate and frozen stretches are named.
     """
     with _output.busy(f"reading {path.name}"):
         motion = _options.read(path, fps=fps, skeleton=skeleton, first_frame=first_frame)
@@ -49,6 +51,12 @@ def info(
     )
     _output.say(f"  estimated noise {report['noise_degrees']:.2g}° (root mean square over the joints)")
     _output.say(f"  {', '.join(counts)}")
+    if report["source"]["says"]:
+        _output.say(f"  {report['source']['says']}")
+    if report["flips"]:
+        _output.say(
+            f"  {_output.counted(report['flips'], 'flip')} of the whole body: the root turns by more than 90° in a frame"
+        )
     worst = sorted(
         joints,
         key=lambda joint: (
@@ -81,6 +89,7 @@ def describe(motion: Motion) -> dict[str, Any]:
     """Return what `info` says about a motion."""
     defects = find_defects(motion.rotations, fps=motion.fps)
     noise = np.degrees(noise_level(motion.rotations).astype(np.float64))
+    source = sampling.recognised(motion.rotations, motion.fps)
     spikes, jumps = defects.spikes.sum(axis=0), defects.jumps.sum(axis=0)
     return {
         "frames": len(motion),
@@ -94,6 +103,14 @@ def describe(motion: Motion) -> dict[str, Any]:
         "spikes": int(spikes.sum()),
         "jumps": int(jumps.sum()),
         "frozen_frames": defects.frozen,
+        "flips": sampling.flips(motion.rotations),
+        "source": {
+            "kind": source.kind,
+            "frames_between_measurements": source.spacing,
+            "measurements_per_second": motion.fps / source.spacing,
+            "frozen_stretches": source.freezes,
+            "says": source.says(motion.fps),
+        },
         "joints": [
             {
                 "name": name,

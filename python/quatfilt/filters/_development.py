@@ -22,13 +22,28 @@ def reference_sigma(frames: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.clip(frames, _SHORTEST, _LONGEST)
 
 
+RunSpan: TypeAlias = Callable[[Array, Array | None, Array | None, _spans.Span], tuple[Array, Array | None]]
+"""The same, given the span."""
+
+
 def filtered(clip: _spans.Clip, translation: Array | None, run: Run) -> tuple[Array, Array | None]:
     """Run a filter over each span of a clip, and over a translation ``(frames, 3)`` where joint 0 is there."""
+
+    def one(
+        rotations: Array, part: Array | None, trust: Array | None, span: _spans.Span
+    ) -> tuple[Array, Array | None]:
+        return run(rotations, part, trust, span.joints)
+
+    return filtered_spans(clip, translation, one)
+
+
+def filtered_spans(clip: _spans.Clip, translation: Array | None, run: RunSpan) -> tuple[Array, Array | None]:
+    """Run a filter as `filtered` does, one that knows where its span lies."""
     moved = None if translation is None else translation.astype(clip.rotations.dtype)
 
     def one(rotations: Array, trust: Array | None, span: _spans.Span) -> Array:
         part = moved[span.frames] if moved is not None and 0 in span.joints else None
-        result, along = run(rotations, part, trust, span.joints)
+        result, along = run(rotations, part, trust, span)
         if moved is not None and along is not None:
             moved[span.frames] = along
         return result

@@ -4,7 +4,8 @@ Gaps up to `max_gap` are filled along geodesics, and what was filled has confide
 is cut where one begins or ends, and its spans are filtered apart. A filter that looks at whole poses has all joints cut
 where one of them comes or goes.
 
-Filters with weights of their own take the confidences. For others `Clip.trusted` prepares the samples.
+Samples of confidence 0 are filled in the same way, however long they last: a filter sees nothing of them. Filters with weights of their
+own take the other confidences. For the rest `Clip.trusted` prepares the samples.
 """
 
 import itertools
@@ -86,14 +87,39 @@ class Clip:
         """Run a filter over each span."""
         frames, joints, _ = self.rotations.shape
         if [(span.frames, len(span.joints)) for span in self.spans] == [(slice(0, frames), joints)]:
-            return run(self.rotations, self.confidence, self.spans[0])
+            return run(*self.part(self.spans[0]), self.spans[0])
         result = np.full_like(self.rotations, np.nan)
         for span in self.spans:
-            part = np.ascontiguousarray(self.rotations[span.frames, span.joints])
-            trust = None if self.confidence is None else self.confidence[span.frames, span.joints]
-            filtered = run(part, None if trust is None else np.ascontiguousarray(trust), span)
-            result[span.frames, span.joints] = filtered
+            result[span.frames, span.joints] = run(*self.part(span), span)
         return result
+
+    def part(self, span: Span) -> tuple[Array, Array | None]:
+        """Return the rotations and the confidences of a span; samples of confidence 0 are filled in as missing ones are."""
+        frames, joints, _ = self.rotations.shape
+        rotations, trust = self.rotations, self.confidence
+        if (span.frames, len(span.joints)) != (slice(0, frames), joints):
+            rotations = np.ascontiguousarray(rotations[span.frames, span.joints])
+            trust = None if trust is None else np.ascontiguousarray(trust[span.frames, span.joints])
+        if trust is not None and self.weighed:
+            rotations = _refilled(rotations, trust == 0)
+        return rotations, trust
+
+
+def _refilled(rotations: Array, unknown: Mask) -> Array:
+    """Return rotations with samples filled in along geodesics, the joints still in the hemisphere of their first sample.
+
+    A joint of which nothing is known stays as it is.
+    """
+    unknown = unknown & ~unknown.all(axis=0)
+    if not unknown.any():
+        return rotations
+    known = rotations.copy()
+    known[unknown] = np.nan
+    filled = cast("Array", ops().fill_gaps(known, -1, "slerp")[0])
+    # A rotation and its opposite are the same: this chooses a sign and does no arithmetic.
+    opposite = unknown[0] & ((filled[0] * rotations[0]).sum(axis=-1) < 0)
+    filled[:, opposite] *= -1
+    return filled
 
 
 def prepare(

@@ -19,12 +19,12 @@ _ROUNDING = 1e-9
 _ANY_LENGTH = -1
 
 
-def gap_frames(max_gap: float | None, fps: float, frames: int) -> int:
-    """Return the longest gap in frames, for a clip of `frames` frames; −1 for any length."""
+def gap_frames(max_gap: float | None, fps: float, frames: int, name: str = "max_gap") -> int:
+    """Return the longest gap in frames, at most `frames`; −1 for any length. `name` is the argument's in messages."""
     rate = _validation.number(fps, "fps", above=0)
     if max_gap is None:
         return _ANY_LENGTH
-    return math.floor(min(_validation.number(max_gap, "max_gap", at_least=0) * rate, frames) + _ROUNDING)
+    return math.floor(min(_validation.number(max_gap, name, at_least=0) * rate, frames) + _ROUNDING)
 
 
 def fill_gaps(

@@ -145,8 +145,7 @@ def _derivative(
     frames, joints = clip.rotations.shape[:2]
     result = np.full((frames, joints, 3), np.nan, clip.rotations.dtype)
     for span in clip.spans if frames else ():
-        part = np.ascontiguousarray(clip.rotations[span.frames, span.joints])
-        trust = None if clip.confidence is None else clip.confidence[span.frames, span.joints]
+        part, trust = clip.part(span)
         short = _odd_at_most(window, len(part))
         if short > order:
             fit, values = _polynomials(short, degree, 0, rate)

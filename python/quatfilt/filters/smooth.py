@@ -7,9 +7,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from quatfilt import _validation
 from quatfilt._backend import ops
-from quatfilt._typing import Array, PerJoint
+from quatfilt._typing import Array, Mask, PerJoint
 from quatfilt.filters import _development, _paths, _spans
 from quatfilt.filters._gains import weights
+from quatfilt.filters._measured import whitened
+from quatfilt.noise._measure import measure
 
 _STRONGEST = 1e6
 """Far below it already, nothing is left but a constant or a polynomial."""
@@ -17,6 +19,17 @@ _STRONGEST = 1e6
 Joints: TypeAlias = Literal["apart", "together"]
 
 _JOINTS: tuple[Joints, ...] = ("apart", "together")
+
+Noise: TypeAlias = Literal["white", "measured"]
+
+_NOISES: tuple[Noise, ...] = ("white", "measured")
+
+_LONGEST_FREEZE = 0.25, 15
+"""Seconds, and frames where the frame rate is not known: joints that repeat their sample for longer are frozen. What they did
+meanwhile is not known, and they stay as they are."""
+
+_LEAST_SHARE = 0.35
+"""Share of the level that is taken for noise where it may as well be what fast motion leaves in the differences."""
 
 _PATCH_ROUNDS = 1
 """How often groups of similar patches are smoothed: a second time gains at strong noise what it loses at weak noise."""
@@ -28,6 +41,7 @@ def smooth(
     strength: PerJoint = 1.0,
     joints: Joints = "apart",
     learned: bool = False,
+    noise: Noise = "white",
     confidence: ArrayLike | None = None,
     gaps: _spans.Gaps = "fill",
     max_gap: float | None = None,
@@ -53,10 +67,15 @@ def smooth(
     joints : {"apart", "together"}, default "apart"
         With ``"together"`` three more steps follow: all joints are smoothed along the principal axes of the whole body, then
         groups of similar patches of motion, wherever they are within 256 frames, and then all joints as few movements at a
-        time. What repeats itself, in time or between joints, is kept, and noise is not. Takes more than ten times as long.
+        time. What repeats itself, in time or between joints, is kept, and noise is not. Takes about six times as long.
     learned : bool, default False
         With ``joints="together"``, True adds a last step, which corrects the result in several scales of time with gains from a
         small network that was trained on recordings of other people. With ``"apart"`` there is no such step.
+    noise : {"white", "measured"}, default "white"
+        With ``"measured"`` the noise need be neither white nor steady: its colour, its axes, its level along time and exact repeats
+        are measured first, see `noise_model`. Samples that repeat the one before have confidence 0; stretches with more noise have
+        less confidence; coloured noise is whitened. Where the noise turns out to be white and steady, the result is the same as
+        with ``"white"``, bit for bit.
     confidence : array_like or None, shape (frames,) or (frames, joints), default None
         Weights of the samples, from 0 to 1; NaN counts as 0. Samples that were filled in have 0. What has 0 is filled in from
         its neighbours, and counts as a hundredth.
@@ -87,7 +106,8 @@ def smooth(
 
     Notes
     -----
-    Cost: linear in frames and joints. Single frames that lie far off are smeared: `despike` before.
+    Cost: linear in frames and joints; together, the similarities of joints take time by the square of their number. Memory is about
+    three times the input beside the result, and linear in both. Single frames that lie far off are smeared: `despike` before.
 
     References
     ----------
@@ -113,6 +133,7 @@ def smooth(
         strength=strength,
         joints=joints,
         learned=learned,
+        noise=noise,
         confidence=confidence,
         gaps=gaps,
         max_gap=max_gap,
@@ -128,40 +149,101 @@ def with_translation(
     strength: PerJoint,
     joints: Joints,
     learned: bool,
+    noise: Noise,
+    fps: float,
     **missing: Any,
 ) -> tuple[Array, Array | None]:
     """Smooth as `smooth` does, and a translation ``(frames, 3)`` by its own noise and with the strength of joint 0."""
     together = _validation.choice(joints, "joints", _JOINTS) == "together"
     learned = _validation.switch(learned, "learned")
-    clip = _spans.prepare(q, together=together, **missing)
+    measured = _validation.choice(noise, "noise", _NOISES) == "measured"
+    clip = _spans.prepare(q, together=together, fps=fps, **missing)
     scale = _validation.per_joint(
         strength, "strength", clip.rotations.shape[1], at_least=0, at_most=_STRONGEST
     )
-    noise = np.zeros_like(scale)
+    model = None
+    levels = np.zeros_like(scale)
     position_noise = 0.0
     if not clip.unchanged:
-        noise = scale * ops().noise_level(clip.observed).astype(np.float64)
+        if measured:
+            model = measure(clip.observed)
+            levels = scale * model.white * (_LEAST_SHARE + (1 - _LEAST_SHARE) * model.evidence)
+        else:
+            levels = scale * ops().noise_level(clip.observed).astype(np.float64)
         if translation is not None:
             path = _trusted_part(translation, clip)
             position_noise = float(scale[0] * ops().noise_level(path[:, None])[0])
 
     def run(
-        rotations: Array, along: Array | None, trust: Array | None, there: NDArray[np.intp]
+        rotations: Array, along: Array | None, trust: Array | None, span: _spans.Span
     ) -> tuple[Array, Array | None]:
+        here = levels[span.joints]
+        kept = rotations
+        frozen = None if model is None else model.repeated[span.frames, span.joints]
+        if frozen is not None and frozen.any():
+            trust = np.where(frozen, 0, 1 if trust is None else trust)
+            trust = np.ascontiguousarray(trust, rotations.dtype)
         if trust is not None:
             rotations = _without_untrusted(rotations, trust)
             along = None if along is None else _paths.straightened(along, trust[:, 0] > 0)
-        levels = noise[there]
-        result, moved = ops().smooth(rotations, along, trust, levels, position_noise)
-        if together:
-            result = ops().smooth_body(rotations, result, trust, levels)
-            patches = ops().smooth_patches(rotations, result, trust, levels, _PATCH_ROUNDS)
-            result = ops().smooth_rank(rotations, patches, trust, levels)
-            if learned:
-                result = ops().smooth_gains(rotations, patches, result, trust, levels, 1.0, *weights())
-        return cast("Array", result), cast("Array | None", moved)
+        if model is None:
+            return _smoothed(
+                rotations, along, trust, here, position_noise, together=together, learned=learned
+            )
+        white = whitened(rotations, trust, here, span, model)
+        result, moved = _smoothed(
+            white.rotations,
+            along,
+            white.confidence,
+            white.noise,
+            position_noise,
+            together=together,
+            learned=learned,
+        )
+        result = white.back(result)
+        if frozen is not None:
+            long = _runs_of_at_least(frozen, _freeze_frames(fps))
+            result[long] = kept[long]
+        return result, moved
 
-    return _development.filtered(clip, translation, run)
+    return _development.filtered_spans(clip, translation, run)
+
+
+def _smoothed(
+    rotations: Array,
+    along: Array | None,
+    trust: Array | None,
+    levels: NDArray[np.float64],
+    position_noise: float,
+    *,
+    together: bool,
+    learned: bool,
+) -> tuple[Array, Array | None]:
+    """Smooth rotations of white noise, and a translation."""
+    result, moved = ops().smooth(rotations, along, trust, levels, position_noise)
+    if together:
+        result = ops().smooth_body(rotations, result, trust, levels)
+        patches = ops().smooth_patches(rotations, result, trust, levels, _PATCH_ROUNDS)
+        result = ops().smooth_rank(rotations, patches, trust, levels)
+        if learned:
+            result = ops().smooth_gains(rotations, patches, result, trust, levels, 1.0, *weights())
+    return cast("Array", result), cast("Array | None", moved)
+
+
+def _freeze_frames(fps: float) -> int:
+    seconds, frames = _LONGEST_FREEZE
+    return frames if fps <= 1 else max(round(seconds * fps), 2)
+
+
+def _runs_of_at_least(mask: Mask, length: int) -> Mask:
+    """Return where a mask ``(frames, joints)`` is set for so many frames on end."""
+    result = np.zeros_like(mask)
+    edges = np.diff(mask.astype(np.int8), axis=0, prepend=0, append=0)
+    for joint in np.flatnonzero(mask.any(axis=0)):
+        starts, ends = np.flatnonzero(edges[:, joint] > 0), np.flatnonzero(edges[:, joint] < 0)
+        for start, end in zip(starts, ends, strict=True):
+            result[start:end, joint] = end - start >= length
+    return result
 
 
 def _trusted_part(translation: Array, clip: _spans.Clip) -> Array:
@@ -181,4 +263,4 @@ def _without_untrusted(rotations: Array, trust: Array) -> Array:
     return cast("Array", ops().fill_gaps(gone, -1, "slerp")[0])
 
 
-__all__ = ["Joints", "smooth", "with_translation"]
+__all__ = ["Joints", "Noise", "smooth", "with_translation"]

@@ -1,5 +1,7 @@
 """Karcher mean of rotations."""
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -56,7 +58,8 @@ def mean(
     if array.ndim < 2 or along == array.ndim - 1:
         raise ValueError(f"axis: expected an axis before the last of shape {array.shape}, got {axis}")
     moved = np.moveaxis(array, along, 0)
-    clip, _ = _validation.clip(np.ascontiguousarray(moved.reshape(len(moved), -1, 4)), "q")
+    columns = math.prod(moved.shape[1:-1])
+    clip, _ = _validation.clip(np.ascontiguousarray(moved.reshape(len(moved), columns, 4)), "q")
     share = None
     if weights is not None:
         given = _validation.floats(weights, "weights")

@@ -11,6 +11,7 @@ mod motion;
 mod noise;
 mod reconstruction;
 mod rotations;
+mod sampling;
 mod search;
 mod threads;
 
@@ -23,7 +24,7 @@ mod _core {
     #[pymodule_export]
     use super::filters::confidence::trusted;
     #[pymodule_export]
-    use super::filters::despike::find_spikes;
+    use super::filters::despike::{find_spikes, find_swaps};
     #[pymodule_export]
     use super::filters::development::{develop, undevelop};
     #[pymodule_export]
@@ -44,6 +45,8 @@ mod _core {
     use super::filters::smooth::body::smooth_body;
     #[pymodule_export]
     use super::filters::smooth::gains::smooth_gains;
+    #[pymodule_export]
+    use super::filters::smooth::low_pass::low_pass;
     #[pymodule_export]
     use super::filters::smooth::patches::smooth_patches;
     #[pymodule_export]
@@ -77,9 +80,17 @@ mod _core {
     #[pymodule_export]
     use super::geodesics::segment::segment;
     #[pymodule_export]
+    use super::motion::feet::{foot_displacements, place_feet};
+    #[pymodule_export]
     use super::motion::skeleton::{forward_kinematics, forward_kinematics_moving};
     #[pymodule_export]
+    use super::noise::model::{noise_along_time, noise_axes, noise_colour, noise_over_motion};
+    #[pymodule_export]
     use super::noise::noise::noise_level;
+    #[pymodule_export]
+    use super::noise::repeats::find_repeats;
+    #[pymodule_export]
+    use super::noise::whiten::{drawn_towards, unwhiten, whiten};
     #[pymodule_export]
     use super::reconstruction::features::pose_features;
     #[pymodule_export]
@@ -100,6 +111,12 @@ mod _core {
     use super::rotations::quaternion::{conjugate, exp, geodesic_distance, log, multiply, normalize, scan};
     #[pymodule_export]
     use super::rotations::resample::slerp;
+    #[pymodule_export]
+    use super::sampling::sampling::sampling;
+    #[pymodule_export]
+    use super::sampling::spline::{knots, spline};
+    #[pymodule_export]
+    use super::sampling::tracker_noise::tracker_noise;
     #[pymodule_export]
     use super::search::patch_neighbors::patch_neighbors;
     #[pymodule_export]

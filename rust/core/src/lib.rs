@@ -9,6 +9,7 @@
 //!   [`elementary`] (vectorisable functions), [`simd`] (run-time dispatch), [`parallel`] (the thread pool);
 //! - [`rotations`]: algebra, continuity, resampling;
 //! - [`search`]: the most similar patches and poses;
+//! - [`sampling`]: the clock of the source, and noise that looks like motion;
 //! - [`filters`]: filling of gaps;
 //! - [`noise`]: the noise level;
 //! - [`geodesics`]: principal geodesic analysis, compression and segmentation with geodesics;
@@ -32,6 +33,7 @@ pub mod parallel;
 pub mod real;
 pub mod reconstruction;
 pub mod rotations;
+pub mod sampling;
 pub mod search;
 pub mod simd;
 pub mod window;

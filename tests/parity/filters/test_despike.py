@@ -7,7 +7,7 @@ import pytest
 import quatfilt as qf
 import tolerances
 from drawn import same_samples, seeds
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from layouts import LAYOUTS
 from quatfilt import _core, _reference
@@ -27,12 +27,12 @@ def spoilt(rng, frames, joints, share=0.05):
     return clips.flipped(rng, clips.product(q, turns))
 
 
-def agree(x, *, confidence=None, smallest=0.1, radius=3, threshold=4.0):
+def agree(x, *, confidence=None, smallest=0.1, radius=3, threshold=4.0, longest=0):
     noise = np.asarray(_reference.noise_level(x), np.float64)
     limits = np.full(x.shape[1], float(smallest))
     before = x.tobytes()
     result, expected = (
-        backend.find_spikes(x, confidence, noise, limits, radius, threshold)
+        backend.find_spikes(x, confidence, noise, limits, radius, threshold, longest)
         for backend in (_core, _reference)
     )
     assert x.tobytes() == before, "the input was written"
@@ -62,6 +62,33 @@ def test_any_options(seed, frames, joints, dtype, radius, threshold, smallest, t
 def test_long_clips(dtype):
     rng = np.random.default_rng(1)
     assert agree(spoilt(rng, 2_000, 2, share=0.02).astype(dtype)).sum() > 50
+
+
+@settings(max_examples=8)
+@given(
+    seed=seeds,
+    dtype=drawn.dtypes,
+    radius=st.sampled_from([2, 3]),
+    longest=st.sampled_from([3, 11, 45]),
+    trusted=st.booleans(),
+)
+def test_bursts_and_swaps(seed, dtype, radius, longest, trusted):
+    rng = np.random.default_rng(seed)
+    q = clips.noisy(rng, clips.smooth(rng, 90, 3), 0.003)
+    for joint in range(3):
+        for start in rng.integers(1, 80, 2):
+            run = slice(start, start + rng.integers(1, 14))
+            q[run, joint] = clips.product(q[run, joint], clips.from_vectors(0.6 * rng.standard_normal(3)))
+    for start in rng.integers(1, 78, 2):
+        run = slice(start, start + rng.integers(1, 12))
+        q[run, :2] = q[run, 1::-1]
+    q[50:70] = np.repeat(q[50:70:4], 4, axis=0)
+    q = np.ascontiguousarray(clips.flipped(rng, q), dtype)
+    confidence = clips.confidences(rng, 90, 3).astype(dtype) if trusted else None
+    agree(q, confidence=confidence, radius=radius, longest=longest)
+    options = (np.full(3, 0.003), np.full(3, 0.1), 4.0, longest)
+    result, expected = (backend.find_swaps(q, confidence, *options) for backend in (_core, _reference))
+    np.testing.assert_array_equal(result, expected)
 
 
 @pytest.mark.parametrize("dtype", DTYPES)

@@ -6,8 +6,9 @@ import pytest
 import quatfilt as qf
 import tolerances
 from drawn import dtypes, seeds, spoil
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from plugins.properties import examples
 from quatfilt import _core, _reference
 
 DTYPES = [np.float32, np.float64]
@@ -51,7 +52,7 @@ def agree(q, objective, components=3):
     assert q.tobytes() == before, "the input was written"
 
 
-@settings(max_examples=15)
+@examples(15)
 @given(
     seed=seeds,
     frames=st.sampled_from([40, 63, 64, 65, 300]),

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 import tolerances
 from drawn import dtypes, seeds, spoil, spoilt_clips
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from plugins.properties import examples
 from quatfilt import _core, _reference
 
 TOLERANCES = st.sampled_from([1e-7, 1e-4, np.radians(0.1), 0.05, 4.0])
@@ -38,7 +39,7 @@ def agree(q, tolerance, quantised):
     return back, stream
 
 
-@settings(max_examples=30)
+@examples(30)
 @given(
     q=spoilt_clips(
         lengths=st.sampled_from([0, 1, 2, 3, 4, 5, 31, 33, 64, 65, 130, 300]), joints=st.sampled_from([1, 3])
@@ -50,7 +51,7 @@ def test_of_motion_with_missing_samples(q, tolerance, quantised):
     agree(q, tolerance, quantised)
 
 
-@settings(max_examples=15)
+@examples(15)
 @given(seed=seeds, dtype=dtypes, tolerance=TOLERANCES)
 def test_of_anything(seed, dtype, tolerance):
     rng = np.random.default_rng(seed)

@@ -6,9 +6,10 @@ import pytest
 import quatfilt as qf
 import tolerances
 from drawn import dtypes, seeds, spoil
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from layouts import LAYOUTS
+from plugins.properties import examples
 from quatfilt import _core, _reference
 
 DTYPES = [np.float32, np.float64]
@@ -69,7 +70,7 @@ def agree(q, objective, components=4):
     assert q.tobytes() == before, "the input was written"
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(
     seed=seeds,
     frames=st.sampled_from([1, 2, 3, 7, 8, 9, 40, 300]),

@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 import tolerances
 from drawn import spoilt_clips
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from plugins.properties import examples
 from quatfilt import _core, _reference
 
 
@@ -23,7 +24,7 @@ def agree(q, *options):
     return cuts
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(
     q=spoilt_clips(joints=st.sampled_from([1, 2, 5]), missing=st.sampled_from([0.0, 0.02, 1.0])),
     components=st.sampled_from([1, 2]),

@@ -5,12 +5,13 @@ over what the mean is taken: the whole clip, or only the frames of each joint; `
 """
 
 from quatfilt.motion.metrics.error import angle_error, mse, position_error, psnr
-from quatfilt.motion.metrics.feet import foot_contacts, foot_slide
+from quatfilt.motion.metrics.feet import foot_contacts, foot_scale, foot_slide
 from quatfilt.motion.metrics.speed import jerk, peak_velocity_kept
 
 __all__ = [
     "angle_error",
     "foot_contacts",
+    "foot_scale",
     "foot_slide",
     "jerk",
     "mse",

@@ -1,6 +1,5 @@
 """Feet on the ground: when they touch it, and how far they slide on it."""
 
-import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
@@ -9,14 +8,12 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from quatfilt import _validation
 from quatfilt._typing import Mask
+from quatfilt.motion.legs import find_legs, foot_joints, pelvis, up_axis
 from quatfilt.motion.metrics import _samples
 from quatfilt.motion.metrics._samples import PER, Per, Values
 
 if TYPE_CHECKING:
     from quatfilt.motion.motion import Motion
-
-_FOOT = re.compile(r"foot|toe|ankle|ball", re.IGNORECASE)
-"""Names of foot joints in BVH, Acclaim and SMPL skeletons."""
 
 _SLOW = 15.0
 """Centimetres per second: a joint on the ground is slower."""
@@ -26,6 +23,12 @@ _LOW = 5.0
 
 _FEWEST = 3
 """Frames: a shorter touch is none."""
+
+_LEG = 90.0
+"""Centimetres: length of the leg of a skeleton whose unit is not known."""
+
+_SHORT_LEG, _LONG_LEG = 60.0, 120.0
+"""Centimetres: a leg outside of these is not measured in centimetres."""
 
 Up = Literal["auto", "x", "y", "z"]
 
@@ -38,9 +41,11 @@ def foot_contacts(motion: "Motion", *, feet: Sequence[str] | None = None, up: Up
     Parameters
     ----------
     motion : Motion
-        Motion with a skeleton whose unit is known (`Skeleton.centimetres_per_unit`); otherwise it counts as centimetres.
+        Motion with a skeleton whose unit is known (`Skeleton.centimetres_per_unit`). Otherwise lengths count as centimetres, multiplied by
+        `foot_scale`.
     feet : sequence of str or None, default None
-        Names of the foot joints; None for all whose names speak of feet, ankles or toes.
+        Names of the foot joints; None for the ankles and toes of the legs that are found by the names of the joints, or, without legs,
+        for all joints whose names hold a word for feet, ankles or toes.
     up : {"auto", "x", "y", "z"}
         The vertical axis; ``"auto"`` is the one that leads from the feet to the root.
 
@@ -84,7 +89,7 @@ def foot_slide(
         Motion that says when the feet touch the ground, see `foot_contacts`; None for `motion` itself. Noise hides
         contacts, so that motions are comparable only with one and the same reference.
     feet : sequence of str or None, default None
-        Names of the foot joints; None for all whose names speak of feet, ankles or toes.
+        Names of the foot joints; None as in `foot_contacts`.
     up : {"auto", "x", "y", "z"}
         The vertical axis; ``"auto"`` is the one that leads from the feet to the root.
     per : {"clip", "joint"}
@@ -128,16 +133,43 @@ def foot_slide(
     return float(_samples.mean(slide)) if how == "clip" else slide
 
 
-def foot_joints(names: Sequence[str]) -> list[str]:
-    """Return the names that speak of feet, ankles or toes."""
-    return [name for name in names if _FOOT.search(name)]
+def foot_scale(motion: "Motion") -> float:
+    """Return the factor by which `foot_contacts` and `foot_slide` multiply lengths.
+
+    Where the unit of a skeleton is not known (``centimetres_per_unit`` is 1) and its leg is shorter than 60 or longer than 120 units, the
+    unit is not the centimetre. Then the leg is taken to be 90 cm long.
+
+    Parameters
+    ----------
+    motion : Motion
+        Motion with a skeleton.
+
+    Returns
+    -------
+    float
+        90 / leg length in such a skeleton; 1 in others, and in those without legs.
+
+    Examples
+    --------
+    >>> import quatfilt as qf
+    >>> from quatfilt.evaluation.synthetic import walk
+    >>> qf.metrics.foot_scale(walk(seconds=1))
+    1.0
+    """
+    skeleton = motion.skeleton
+    lengths = [leg.length for leg in find_legs(skeleton)]
+    if skeleton.centimetres_per_unit != 1 or not lengths:
+        return 1.0
+    length = sum(lengths) / len(lengths)
+    return 1.0 if _SHORT_LEG <= length <= _LONG_LEG else _LEG / length
 
 
 def _paths(motion: "Motion", feet: Sequence[str] | None, up: Up) -> tuple[Values, int]:
     """Return the paths of the foot joints in centimetres, ``(frames, feet, 3)``, and the axis that points up."""
-    names = list(motion.skeleton.names)
+    skeleton = motion.skeleton
+    names = list(skeleton.names)
     if feet is None:
-        joints = [names.index(name) for name in foot_joints(names)]
+        joints = foot_joints(skeleton)
         if not joints:
             raise ValueError("feet: expected names of foot joints, for no joint's name speaks of feet")
     else:
@@ -145,14 +177,15 @@ def _paths(motion: "Motion", feet: Sequence[str] | None, up: Up) -> tuple[Values
         if unknown:
             raise ValueError(f"feet: expected names of the skeleton's joints, got {unknown[0]!r}")
         joints = [names.index(name) for name in feet]
-    positions = np.asarray(motion.positions(), np.float64) * motion.skeleton.centimetres_per_unit
+    unit = skeleton.centimetres_per_unit * foot_scale(motion)
+    positions = np.asarray(motion.positions(), np.float64) * unit
     paths = positions[:, joints]
     axis = _validation.choice(up, "up", ("auto", "x", "y", "z"))
     if axis != "auto":
         return paths, "xyz".index(axis)
-    rise = np.nan_to_num(_samples.mean(positions[:, :1] - paths, axis=(0, 1)))
-    vertical = int(np.argmax(np.abs(rise)))
-    if rise[vertical] < 0:
+    vertical = up_axis(positions[:, pelvis(skeleton, find_legs(skeleton))], paths)
+    if vertical < 0:
+        vertical += 3
         paths[..., vertical] *= -1
     return paths, vertical
 
@@ -172,4 +205,4 @@ def _contacts(paths: Values, vertical: int, fps: float) -> Mask:
     return result
 
 
-__all__ = ["foot_contacts", "foot_joints", "foot_slide"]
+__all__ = ["foot_contacts", "foot_scale", "foot_slide"]

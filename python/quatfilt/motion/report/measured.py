@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from quatfilt._typing import Mask
 from quatfilt.motion import metrics
 from quatfilt.motion.defects import find_defects
+from quatfilt.motion.legs import foot_joints
 from quatfilt.motion.metrics import _samples
 from quatfilt.motion.metrics._samples import Values
-from quatfilt.motion.metrics.feet import foot_joints
 from quatfilt.motion.metrics.speed import jerks, peaks_kept, steps
+from quatfilt.motion.motion import Motion
 from quatfilt.motion.report.sides import Side
 from quatfilt.noise.noise import noise_level
 
@@ -91,6 +92,38 @@ class Foot:
     slide_before: float
     slide_after: float
     slide_reference: float = float("nan")
+
+
+@dataclass(frozen=True)
+class Placed:
+    """What holding feet on the ground changed after the filter.
+
+    Parameters
+    ----------
+    joint : str
+        The joint that was turned farthest.
+    frame : int
+        Where it was.
+    turned_max : float, degrees
+        By how much.
+    frames : int
+        Frames in which any joint was turned.
+    """
+
+    joint: str
+    frame: int
+    turned_max: float
+    frames: int
+
+
+def placed(filtered: Motion, after: Motion) -> Placed:
+    """Measure by how much joints differ from the filtered motion before its feet were placed."""
+    change = np.nan_to_num(np.asarray(metrics.angle_error(filtered.rotations, after.rotations, per="sample")))
+    if not change.size:
+        return Placed("", 0, 0.0, 0)
+    frame, joint = np.unravel_index(int(np.argmax(change)), change.shape)
+    changed = int(np.count_nonzero((change > 0).any(axis=1)))
+    return Placed(after.skeleton.names[joint], int(frame), float(change[frame, joint]), changed)
 
 
 Column: TypeAlias = tuple[NDArray[np.generic], Any]
@@ -200,7 +233,7 @@ def feet(before: Side, after: Side, reference: Side | None = None) -> tuple[Foot
     if before.motion is None or after.motion is None:
         return ()
     ground = after.motion if reference is None or reference.motion is None else reference.motion
-    names = foot_joints(before.names)
+    names = [before.names[joint] for joint in foot_joints(before.motion.skeleton)]
     if not names:
         return ()
     slides = [
@@ -214,4 +247,9 @@ def feet(before: Side, after: Side, reference: Side | None = None) -> tuple[Foot
     )
 
 
-__all__ = ["Foot", "Joint", "feet", "joints"]
+def foot_scale(before: Side) -> float:
+    """Return the factor by which lengths of the feet were multiplied; 1 without a skeleton."""
+    return 1.0 if before.motion is None else metrics.foot_scale(before.motion)
+
+
+__all__ = ["Foot", "Joint", "Placed", "feet", "foot_scale", "joints", "placed"]

@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from quatfilt import _validation
+from quatfilt import _validation, sampling
 from quatfilt.evaluation._plot import figure
 from quatfilt.formats.files import write_bytes
 from quatfilt.motion.motion import Motion
 from quatfilt.motion.report import measured, picture, text
-from quatfilt.motion.report.measured import Foot, Joint
+from quatfilt.motion.report.measured import Foot, Joint, Placed
 from quatfilt.motion.report.sides import Side, sides
 
 _PICTURES = (".png", ".pdf", ".svg")
@@ -38,6 +38,12 @@ class Report:
         How far the feet slide on the ground; none without a skeleton that has feet.
     clips : tuple of Side
         What was compared, for the curves of the picture.
+    source : str
+        What is known about the clip's source: held, repeated, frozen or interpolated frames; empty if every frame was measured.
+    foot_scale : float
+        Factor by which lengths were multiplied for the slide of the feet, see `metrics.foot_scale`; 1 where the unit is known.
+    placed : Placed or None
+        By how much joints were turned to hold the feet on the ground; None without the filtered motion before that.
 
     Examples
     --------
@@ -58,6 +64,9 @@ class Report:
     joints: tuple[Joint, ...]
     feet: tuple[Foot, ...]
     clips: tuple[Side, ...] = ()
+    source: str = ""
+    foot_scale: float = 1.0
+    placed: Placed | None = None
 
     def __repr__(self) -> str:
         return f"Report({self.frames} frames of {len(self.joints)} joints, changed by {self.overall.change_mean:.2g}°)"
@@ -71,14 +80,17 @@ class Report:
         Returns
         -------
         dict
-            ``frames``, ``fps``, ``overall``, ``joints`` and ``feet``.
+            ``frames``, ``fps``, ``source``, ``overall``, ``joints``, ``feet``, ``foot_scale`` and ``placed``.
         """
         return {
             "frames": self.frames,
             "fps": self.fps,
+            "source": self.source,
             "overall": _finite(asdict(self.overall)),
             "joints": [_finite(asdict(joint)) for joint in self.joints],
             "feet": [_finite(asdict(foot)) for foot in self.feet],
+            "foot_scale": self.foot_scale,
+            "placed": None if self.placed is None else asdict(self.placed),
         }
 
     def write(self, path: str | os.PathLike[str]) -> None:
@@ -115,6 +127,7 @@ def report(
     after: Motion | ArrayLike,
     *,
     reference: Motion | ArrayLike | None = None,
+    filtered: Motion | None = None,
     fps: float | None = None,
     scalar_first: bool = True,
 ) -> Report:
@@ -129,6 +142,9 @@ def report(
         The same clip without and with the filter.
     reference : like `before`, or None, default None
         What is true.
+    filtered : Motion or None, default None
+        The filtered motion before its feet were placed, from ``denoise(..., feet=None)``: the report then tells by how much joints were
+        turned to hold them.
     fps : float or None, hertz, default None
         Frame rate; None for the motion's own. Arrays without one are judged by frames: jerk is in degrees per frame cubed,
         and spikes are those of 120 frames per second.
@@ -175,7 +191,23 @@ def report(
         joints=joints,
         feet=measured.feet(*clips),
         clips=clips,
+        source=sampling.recognised(clips[0].rotations, 1.0 if rate is None else rate).says(rate),
+        foot_scale=measured.foot_scale(clips[0]),
+        placed=_placed(filtered, after),
     )
+
+
+def _placed(filtered: Motion | None, after: Motion | ArrayLike) -> Placed | None:
+    """Return what holding the feet changed, if the motion before that is known."""
+    if filtered is None:
+        return None
+    if not isinstance(after, Motion):
+        raise TypeError("filtered: expected None with rotations, got a Motion")
+    if filtered.rotations.shape != after.rotations.shape:
+        raise ValueError(
+            f"filtered: expected the shape of after, {after.rotations.shape}, got {filtered.rotations.shape}"
+        )
+    return measured.placed(filtered, after)
 
 
 def check_path(path: str | os.PathLike[str]) -> str:
@@ -196,4 +228,4 @@ def _finite(values: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-__all__ = ["Foot", "Joint", "Report", "check_path", "report"]
+__all__ = ["Foot", "Joint", "Placed", "Report", "check_path", "report"]

@@ -4,6 +4,7 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
+    from quatfilt.motion.report.measured import Placed
     from quatfilt.motion.report.report import Report
 
 SHOWN = 8
@@ -27,6 +28,7 @@ def summary(report: "Report") -> str:
         f"{report.frames} frames of {len(report.joints)} joints: turned by {_number(overall.change_mean)}° on average, "
         f"95 % by less than {_number(overall.change_p95)}°, at most {_number(overall.change_max)}°; "
         f"peak angular speed kept {_number(overall.peak_kept)}"
+        f"{f'; {report.source}' if report.source else ''}"
     )
 
 
@@ -40,7 +42,30 @@ def tables(report: "Report") -> list[Table]:
 
 def plain(report: "Report") -> str:
     """Return the report as text."""
-    return "\n\n".join([summary(report), *map(_plain_table, tables(report))])
+    return "\n\n".join([summary(report), *map(_plain_table, tables(report)), *notes(report)])
+
+
+def notes(report: "Report") -> list[str]:
+    """Return sentences about how the feet were measured."""
+    result = [] if report.placed is None else [turned(report.placed)]
+    if report.feet and report.foot_scale != 1:
+        result.append(scaled(report.foot_scale))
+    return result
+
+
+def turned(placed: "Placed") -> str:
+    """Return the sentence that says by how much joints were turned to hold feet on the ground."""
+    if not placed.frames:
+        return "Feet: no joint was turned to hold them on the ground."
+    return (
+        f"Feet: joints were turned in {placed.frames} frames to hold them on the ground, by at most {_number(placed.turned_max)}° "
+        f"({placed.joint}, frame {placed.frame})."
+    )
+
+
+def scaled(factor: float) -> str:
+    """Return the sentence that goes with foot slide in a unit that is not known."""
+    return f"Foot slide: the unit of the skeleton is not known; lengths were multiplied by {factor:.3g}, for a leg of 90 cm."
 
 
 def changed_most(report: "Report", count: int) -> list[int]:
@@ -184,4 +209,16 @@ def _significant(value: float) -> str:
     return f"{value:.{min(max(digits, 0), 6)}f}"
 
 
-__all__ = ["SHOWN", "Table", "changed_most", "has_reference", "jerk_unit", "plain", "summary", "tables"]
+__all__ = [
+    "SHOWN",
+    "Table",
+    "changed_most",
+    "has_reference",
+    "jerk_unit",
+    "notes",
+    "plain",
+    "scaled",
+    "summary",
+    "tables",
+    "turned",
+]

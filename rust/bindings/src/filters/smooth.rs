@@ -2,6 +2,7 @@
 
 pub(crate) mod body;
 pub(crate) mod gains;
+pub(crate) mod low_pass;
 pub(crate) mod patches;
 pub(crate) mod rank;
 mod with_pilot;

@@ -1,3 +1,4 @@
 //! Skeletons in motion.
 
+pub(crate) mod feet;
 pub(crate) mod skeleton;

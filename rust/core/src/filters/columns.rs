@@ -7,7 +7,7 @@ use crate::window::{Boundary, extended_number};
 use crate::{Error, Real};
 
 /// Frames whose sums stay in registers while the lags go by; padded columns are multiples of it.
-pub(super) const BLOCK: usize = 32;
+pub(crate) const BLOCK: usize = 32;
 
 /// Frames after which a long mask looks whether it was interrupted.
 const PIECE: usize = 256 * BLOCK;
@@ -17,14 +17,14 @@ const REACH: f64 = 4.0;
 
 /// A mask of `2·radius + 1` weights, the same before and after.
 #[derive(Debug, Clone)]
-pub(super) struct Mask {
+pub(crate) struct Mask {
     /// Weights of the frame itself and of those after it.
     later: Vec<f64>,
 }
 
 impl Mask {
     /// Gaussian weights of deviation `sigma` frames, cut off at four deviations, with the sum 1.
-    pub(super) fn gaussian(sigma: f64) -> Self {
+    pub(crate) fn gaussian(sigma: f64) -> Self {
         let radius = (REACH * sigma + 0.5).to_count();
         let weight = |lag: usize| {
             let scaled = lag as f64 / sigma;
@@ -58,7 +58,7 @@ impl Mask {
     ///
     /// With the trust `c` of the frames, `Σ_j m_j c_{t+j} x_{t+j} / Σ_j m_j c_{t+j}`; where none under the mask is trusted, the
     /// number stays.
-    pub(super) fn means(
+    pub(crate) fn means(
         &self,
         columns: &mut [&mut [f64]],
         trust: Option<&[f64]>,

@@ -2,7 +2,7 @@
 
 pub mod bilateral;
 pub mod butterworth;
-mod columns;
+pub(crate) mod columns;
 pub mod confidence;
 pub mod despike;
 pub mod development;

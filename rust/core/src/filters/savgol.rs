@@ -46,9 +46,9 @@ impl Savgol {
         check_length("out", frames * joints * 3, out.len())?;
         let derivative = Self { values: derivatives, ..self.clone() };
         let results = input.each_joint(
+            0..joints,
             |_| 0.0,
-            3,
-            true,
+            (3, true),
             2 * self.nanoseconds(),
             interrupt,
             |joint, mut path, spare, rows| {
@@ -65,7 +65,7 @@ impl Savgol {
                 Ok(())
             },
         )?;
-        interleave(&results, 3, 0..3, joints, out)
+        interleave(&results, (3, 0..3), 0..joints, joints, out)
     }
 
     /// Writes what the polynomial of the numbers `x` of a window has at the frames from `first` on.

@@ -1,3 +1,4 @@
 //! Skeletons in motion.
 
+pub mod feet;
 pub mod skeleton;

@@ -30,7 +30,7 @@ const AT_ZERO: [f64; LAGS] =
     [0.25 + 7.5 * 6.5 / 129.0, 0.25 + 7.5 * 3.5 / 129.0, 0.25 - 7.5 * 1.5 / 129.0, 0.25 - 7.5 * 8.5 / 129.0];
 
 /// Joints per task: of float32 they fill a cache line.
-const GROUP: usize = 4;
+pub(super) const GROUP: usize = 4;
 
 /// Frames per chunk.
 const CHUNK: usize = 64;
@@ -38,7 +38,7 @@ const CHUNK: usize = 64;
 multiversion! {
     /// Half the rotation vectors from each frame to the next, NaN beside missing samples, of the joints from `first`:
     /// three planes for each.
-    fn increments<T: Real>(q: ClipView<'_, T>, first: usize, joints: usize, planes: &mut Planes<T>) {
+    pub(super) fn increments<T: Real>(q: ClipView<'_, T>, first: usize, joints: usize, planes: &mut Planes<T>) {
         let row = q.joints() * 4;
         let steps = planes.length();
         let mut rows = [[T::ONE; GROUP * 4]; CHUNK + 1];

@@ -61,6 +61,17 @@ def test_a_body(frames, dtype):
         assert clips.angles(result, pilot[1:]).max() < tolerances.algebra(dtype)
 
 
+@pytest.mark.parametrize(("joints", "frames"), [(64, 580), (65, 300), (65, 296)])
+def test_more_joints_are_several_bodies(joints, frames):
+    """65 joints are bodies of 33 and 32, of which at 296 frames the smaller one alone has as many frames as it needs."""
+    rng = np.random.default_rng(joints)
+    q, pilot = together(rng, frames, joints)
+    result = agree(q, pilot, NOISE)
+    moved = clips.angles(result, pilot).max(axis=0) > 1e-3
+    assert moved[33:].all()
+    assert moved[:33].any() == (frames != 296)
+
+
 @pytest.mark.parametrize("dtype", DTYPES)
 def test_joints_that_are_still_and_joints_without_noise(dtype):
     rng = np.random.default_rng(0)

@@ -7,9 +7,10 @@ import pytest
 import quatfilt as qf
 import tolerances
 from drawn import same_samples, seeds
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from layouts import LAYOUTS
+from plugins.properties import examples
 from quatfilt import _core, _reference
 
 DTYPES = [np.float32, np.float64]
@@ -60,7 +61,7 @@ def agree(q, noise, *, translation=None, confidence=None, translation_noise=0.05
     trusting=st.booleans(),
     along=st.booleans(),
 )
-@settings(max_examples=120)
+@examples(120)
 def test_any_clip(seed, frames, joints, dtype, swing, taken, trusting, along):
     """`taken` is by how much more noise is taken for granted than there is."""
     rng = np.random.default_rng(seed)

@@ -7,8 +7,9 @@ import pytest
 import quatfilt as qf
 import tolerances
 from drawn import same_samples, seeds
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
+from plugins.properties import examples
 from quatfilt import _core, _reference
 
 DTYPES = [np.float32, np.float64]
@@ -34,7 +35,7 @@ def agree(q, pilot, confidence=None, *, noise=0.05, tolerance=0):
     return result
 
 
-@settings(max_examples=25)
+@examples(25)
 @given(
     seed=seeds,
     frames=st.one_of(st.integers(0, 130), st.integers(131, 700)),

@@ -209,7 +209,7 @@ def gates(found: Reals) -> Reals:
     """
     powers = [scales(cell_means(found[..., k] ** 2), WIDE[k]) for k in range(BASES)]
     short = [power[SHORT[k]] for k, power in enumerate(powers)]
-    result = [logarithm(power[0]) / 2 for power in powers]
+    result: list[Reals] = [logarithm(power[0]) / 2 for power in powers]
     result += [logarithm(mean) for mean in short]
     result += [logarithm(power[-1]) for power in powers]
     for k in range(SCALES):

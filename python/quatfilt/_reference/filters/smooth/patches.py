@@ -3,7 +3,7 @@
 What a clip does once more, with other noise, says more about a movement than its neighbours in time do. M. Lebrun, A. Buades and
 J.-M. Morel, *A Nonlocal Bayesian Image Denoising Algorithm*, SIAM Journal on Imaging Sciences 6(3), 2013: for each patch of a
 first estimate, the *pilot*, the patches most like it are gathered; they are taken as drawn from one normal distribution, and with
-its mean and covariance the noisy patch is estimated.
+its mean and covariance those of them that are near in time are estimated from the noisy ones.
 """
 
 import numpy as np
@@ -16,14 +16,21 @@ from quatfilt._reference.rotations.quaternion import exp, multiply, normalize
 LENGTH = 24
 """Frames of a patch."""
 
-COEFFICIENTS = 10
+COEFFICIENTS = 8
 """Cosine coefficients of a patch that are estimated, from the lowest on; what the others hold is the pilot's."""
 
 COMPANIONS = 2
 """Joints of a group: each joint, and the one that moves most like it."""
 
-STEP = 8
-"""Frames from one estimated patch to the next: three of them overlap."""
+STEP = 24
+"""Frames from one model, a mean and a covariance of patches, to the next."""
+
+NEAR = 21
+"""Frames about the patch of a model within which patches are estimated with it, if they are among those most like it. So each frame
+is estimated with several models, whose errors differ."""
+
+APART = 3
+"""Frames from one patch that is estimated with a model to the next."""
 
 RADIUS = 256
 """Frames within which similar patches are looked for, before and after."""
@@ -107,16 +114,19 @@ def moves(clean: Reals, rest: Reals) -> Reals:
     """
     frames, joints = clean.shape[:2]
     last = frames - LENGTH
-    starts = sorted({*range(0, last, STEP), last})
+    centres = sorted({*range(0, last, STEP), last})
     total = np.zeros_like(clean)
     count = np.zeros((frames, joints, 1))
     for group in groups(clean):
         pilots, rests = patches(clean[:, group]), patches(rest[:, group])
-        for start in starts:
-            alike = pilots[nearest(pilots, start)]
-            move = wiener(alike, pilots[start], rests[start]).reshape(COEFFICIENTS, len(group), 3)
-            total[start : start + LENGTH, group] += np.einsum("kl,kjc->ljc", basis(), move)
-            count[start : start + LENGTH, group] += 1
+        for centre in centres:
+            alike = nearest(pilots, centre)
+            lags = alike - centre
+            near = alike[(abs(lags) <= NEAR) & (lags % APART == 0)]
+            estimates = wiener(pilots[alike], pilots[near], rests[near])
+            for start, move in zip(near, estimates.reshape(-1, COEFFICIENTS, len(group), 3), strict=True):
+                total[start : start + LENGTH, group] += np.einsum("kl,kjc->ljc", basis(), move)
+                count[start : start + LENGTH, group] += 1
     return total / count
 
 
@@ -168,8 +178,8 @@ def nearest(pilots: Reals, start: int) -> Reals:
     return np.asarray(start + lags[order[:NEIGHBORS]])
 
 
-def wiener(alike: Reals, pilot: Reals, rest: Reals) -> Reals:
-    """Estimate a clean patch, as its difference from the pilot's.
+def wiener(alike: Reals, pilots: Reals, rests: Reals) -> Reals:
+    """Estimate clean patches, as their differences from the pilot's, `(n, numbers)`.
 
     If patches are normal with the mean `μ` and the covariance `C`, and noise of variance 1 is added, the best estimate from a
     noisy one, `y = p + x`, is
@@ -180,15 +190,15 @@ def wiener(alike: Reals, pilot: Reals, rest: Reals) -> Reals:
     ----------
     alike : array (k, numbers)
         Patches of the pilot.
-    pilot : array (numbers,)
-        `p`.
-    rest : array (numbers,)
-        `x`.
+    pilots : array (n, numbers)
+        `p` of each.
+    rests : array (n, numbers)
+        `x` of each.
     """
     mean = alike.mean(axis=0)
     around = alike - mean
     covariance = SHARE * around.T @ around / len(alike)
     variance = 1 + LEAST_VARIANCE * np.trace(covariance)
-    surprise = pilot + rest - mean
-    noise = variance * np.linalg.solve(covariance + variance * np.eye(len(mean)), surprise)
-    return np.asarray(rest - noise)
+    surprises = (pilots + rests - mean).T
+    noise = variance * np.linalg.solve(covariance + variance * np.eye(len(mean)), surprises)
+    return np.asarray(rests - noise.T)

@@ -7,7 +7,7 @@ use quatfilt_core::parallel::Interrupt;
 use quatfilt_core::{ClipMut, Error, Real};
 
 /// Estimated nanoseconds per rotation of a round.
-const NANOSECONDS: usize = 2500;
+const NANOSECONDS: usize = 800;
 
 struct Patches {
     rounds: usize,

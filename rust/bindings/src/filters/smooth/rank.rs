@@ -7,7 +7,7 @@ use quatfilt_core::parallel::Interrupt;
 use quatfilt_core::{ClipMut, Error, Real};
 
 /// Estimated nanoseconds per frame, joint and joint.
-const NANOSECONDS: usize = 60;
+const NANOSECONDS: usize = 20;
 
 struct Rank;
 

@@ -1,8 +1,9 @@
 //! One joint: its runs of samples, and which of them are spikes.
 
+use super::jumps::Jumps;
 use super::median::median;
 use super::neighbours::{SURROUNDINGS, Sides};
-use super::place::{Place, SLACK};
+use super::place::Place;
 use crate::Error;
 use crate::parallel::Interrupt;
 use std::ops::Range;
@@ -21,6 +22,7 @@ pub(super) struct Joint<P> {
     pub(super) smallest: f64,
     pub(super) radius: usize,
     pub(super) threshold: f64,
+    pub(super) longest: usize,
 }
 
 impl<P: Place> Joint<P> {
@@ -43,37 +45,36 @@ impl<P: Place> Joint<P> {
         for &frame in before {
             trusted[frame] = false;
         }
+        let mut jumps = Jumps::of(self, &trusted);
         let mut found = Vec::new();
+        if jumps.starts().is_empty() {
+            return Ok(found);
+        }
         let mut sides = Sides::default();
-        let sure = P::nearness_at(self.least(1.0)) * (1.0 - SLACK);
-        for length in 1..self.radius {
+        for length in 1..self.radius.min(self.path.len()) {
             interrupt.check()?;
-            for start in 0..(self.path.len() + 1).saturating_sub(length) {
-                let run = start..start + length;
-                let doubt = &self.trust[run.clone()];
-                if !doubt.iter().all(|&trust| trust > 0.0) {
-                    continue;
-                }
-                let doubt = doubt.iter().copied().fold(0.0, f64::max);
-                let bound =
-                    if doubt < 1.0 { P::nearness_at(self.least(doubt)) * (1.0 - SLACK) } else { sure };
-                let Some((a, b)) = self.ends(&run, &trusted) else { continue };
-                let (into, out) = (&self.path[start], &self.path[run.end - 1]);
-                if self.path[a].nearness(*into) <= bound || out.nearness(self.path[b]) <= bound {
-                    continue;
-                }
-                if self.is_spike(&run, doubt, &trusted, &mut sides, interrupt)? {
+            for run in jumps.runs(length) {
+                if let Some(doubt) = self.doubt(&run)
+                    && self.is_spike(&run, doubt, &trusted, &mut sides, interrupt)?
+                {
                     found.extend(run);
                 }
             }
         }
+        self.displaced(&mut jumps, &mut trusted, &mut found, interrupt)?;
         found.sort_unstable();
         found.dedup();
         Ok(found)
     }
 
+    /// The largest confidence of a run; `None` if there is a sample of confidence 0.
+    pub(super) fn doubt(&self, run: &Range<usize>) -> Option<f64> {
+        let trust = &self.trust[run.clone()];
+        trust.iter().all(|&trust| trust > 0.0).then(|| trust.iter().copied().fold(0.0, f64::max))
+    }
+
     /// The least deviation of a spike, whatever is around it.
-    fn least(&self, doubt: f64) -> f64 {
+    pub(super) fn least(&self, doubt: f64) -> f64 {
         self.smallest.max(self.threshold * doubt * self.usual)
     }
 

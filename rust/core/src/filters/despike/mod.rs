@@ -7,17 +7,26 @@
 //! Two of the explanations are the nearest neighbours themselves: where the steps into a run and out of it are short,
 //! nothing else has to be computed.
 //!
+//! Longer runs are spikes if the joint jumps away, and jumps back, beside calm motion. Two joints that jump into each other's
+//! place and back are a swap.
+//!
 //! - `place`: rotations and positions, and what both need to be able to do;
 //! - `joint`: one joint's runs, and which of them are spikes;
+//! - `jumps`: where runs can start and end;
+//! - `displaced`: longer runs;
+//! - `swaps`: joints that change places;
 //! - `neighbours`: the deviation of a run from what its neighbours explain;
 //! - `line`: straight motion;
 //! - `median`: what is usual.
 
+mod displaced;
 mod joint;
+mod jumps;
 mod line;
 mod median;
 mod neighbours;
 mod place;
+mod swaps;
 
 use crate::error::check_length;
 use crate::parallel::{self, Interrupt};
@@ -25,6 +34,7 @@ use crate::rotations::quaternion::unit;
 use crate::{ClipView, Error, Real};
 use joint::Joint;
 use place::{Place, Position, Rotation};
+pub use swaps::Swap;
 
 /// Median deviation of samples of white noise with the deviation 1 per coordinate.
 const DEVIATION_OF_NOISE: f64 = 1.5;
@@ -36,13 +46,20 @@ pub struct Despike {
     pub noise: Vec<f64>,
     /// Deviations up to here are no spikes, per joint: radians of rotation, or the unit of the positions.
     pub smallest: Vec<f64>,
-    /// Spikes are shorter: frames. On either side at most so many neighbours are asked.
+    /// The deviation judges shorter runs, in frames, by at most so many neighbours on either side.
     pub radius: usize,
     /// How many times the usual deviation a spike is away.
     pub threshold: f64,
+    /// The longest displaced run and the longest swap, in frames.
+    pub longest: usize,
 }
 
 impl Despike {
+    /// The least jump of a joint, whatever is around it.
+    fn least(&self, joint: usize) -> f64 {
+        self.smallest[joint].max(self.threshold * (DEVIATION_OF_NOISE * self.noise[joint]))
+    }
+
     /// Marks the spikes of a clip of rotations in `found`, `(frames, joints)`. No sample may be missing.
     ///
     /// # Errors
@@ -102,6 +119,7 @@ impl Despike {
                 smallest: self.smallest[joint],
                 radius: self.radius,
                 threshold: self.threshold,
+                longest: self.longest,
             };
             joint.spikes(interrupt)
         })?;

@@ -25,12 +25,6 @@ impl<P: Place> Joint<P> {
         (earlier, later)
     }
 
-    /// The nearest trusted samples on either side.
-    pub(super) fn ends(&self, run: &Range<usize>, trusted: &[bool]) -> Option<(usize, usize)> {
-        let (mut earlier, mut later) = self.near(run);
-        earlier.find(|&frame| trusted[frame]).zip(later.find(|&frame| trusted[frame]))
-    }
-
     /// How far a run is from where its neighbours would have it, at the sample and by the explanation that fit best;
     /// `None` without a neighbour on either side. The neighbours are left in `sides`.
     pub(super) fn deviation(&self, run: &Range<usize>, trusted: &[bool], sides: &mut Sides) -> Option<f64> {

@@ -7,7 +7,7 @@ use crate::rotations::quaternion::{between, exp_one, log_short, product};
 pub(super) const SLACK: f64 = 1e-9;
 
 /// What moves: a rotation or a position.
-pub(super) trait Place: Copy + Send + Sync {
+pub(super) trait Place: Copy + PartialEq + Send + Sync {
     /// The way from `self` to `to`: a rotation vector in radians, or a difference.
     fn step(self, to: Self) -> [f64; 3];
 
@@ -26,7 +26,7 @@ pub(super) trait Place: Copy + Send + Sync {
 }
 
 /// A unit quaternion.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rotation(pub(super) [f64; 4]);
 
 impl Place for Rotation {
@@ -53,7 +53,7 @@ impl Place for Rotation {
     }
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Position(pub(super) [f64; 3]);
 
 impl Place for Position {

@@ -7,8 +7,8 @@ use crate::simd::multiversion;
 use crate::{ClipView, Real};
 use std::ops::Range;
 
-/// Joints per task: of float32 they fill a cache line.
-pub(super) const GROUP: usize = 4;
+/// Joints per task: few, for each has planes over the whole clip.
+pub(super) const GROUP: usize = 2;
 
 /// Planes of a joint: its quaternions and its confidence.
 pub(super) const ROWS: usize = 5;

@@ -37,6 +37,7 @@ pub use joint::Columns;
 pub(super) use joint::Joint;
 pub use rows::undevelop;
 pub(super) use rows::{interleave, store};
+use std::ops::Range;
 use std::sync::Mutex;
 
 /// Estimated nanoseconds per frame and joint of the way to the vectors and back.
@@ -135,33 +136,34 @@ impl<T: Real> Input<'_, T> {
         self.confidence.map_or(Ok(()), |trust| check_length("confidence", samples, trust.len()))
     }
 
-    /// Develops each joint, which has so much noise, in a frame that is `carried` along or in that of the body, and lets `work` write
-    /// what it makes of it: `width` numbers for each frame. The results stand one joint after the other.
+    /// Develops each joint of a range, which has so much noise, in a frame that is `carried` along or in that of the body, and lets
+    /// `work` write what it makes of it: `width` numbers for each frame. The results stand one joint after the other.
     pub(super) fn each_joint<W: Real>(
         &self,
+        range: Range<usize>,
         noise: impl Fn(usize) -> f64,
-        width: usize,
-        carried: bool,
+        (width, carried): (usize, bool),
         nanoseconds: usize,
         interrupt: &Interrupt,
         work: impl Fn(usize, Joint<'_>, &mut Planes<f64>, &mut [W]) -> Result<(), Error> + Sync + Send,
     ) -> Result<Vec<W>, Error> {
-        let (frames, joints) = (self.clip.frames(), self.clip.joints());
-        let clarity: Vec<f64> = (0..joints).map(|joint| clarity(noise(joint))).collect();
+        let frames = self.clip.frames();
+        let clarity: Vec<f64> = (0..range.end).map(|joint| clarity(noise(joint))).collect();
         let masks: Vec<Mask> = self
             .reference_sigma
             .iter()
             .zip(&clarity)
             .map(|(sigma, clear)| Mask::gaussian(sigma / clear))
             .collect();
-        let mut results = vec![W::ZERO; frames * joints * width];
+        let mut results = vec![W::ZERO; frames * range.len() * width];
         let groups: Vec<&mut [W]> = results.chunks_mut((frames * width * GROUP).max(1)).collect();
         let kept: Mutex<Vec<Buffers>> = Mutex::default();
-        parallel::for_each(groups, frames * joints * (NANOSECONDS + nanoseconds), |group, results| {
+        let work_of_all = frames * range.len() * (NANOSECONDS + nanoseconds);
+        parallel::for_each(groups, work_of_all, |group, results| {
             let mut buffers = kept.lock().map_or(None, |mut kept| kept.pop()).unwrap_or_default();
             let Buffers { samples, joint, spare } = &mut buffers;
-            let first = group * GROUP;
-            align::load(self.clip, self.confidence, &clarity, first..joints.min(first + GROUP), samples);
+            let first = range.start + group * GROUP;
+            align::load(self.clip, self.confidence, &clarity, first..range.end.min(first + GROUP), samples);
             for (i, results) in results.chunks_mut(frames * width).enumerate() {
                 interrupt.check()?;
                 let [w, x, y, z, trust] = samples.rows_mut(i * align::ROWS);
@@ -210,29 +212,35 @@ impl<T: Real> Input<'_, T> {
         if short {
             return quaternion::normalize(self.clip.data(), out);
         }
-        let results = self.each_joint(
-            |joint| filter.noise(joint),
-            4,
-            filter.carried(),
-            filter.nanoseconds(),
-            interrupt,
-            |joint, mut path, spare, rows| {
-                for round in 0..filter.rounds() {
-                    if round > 0 {
-                        path.roll_out();
+        // A few joints at a time: their results need not all be there before they are in their places.
+        let batch = parallel::num_threads() * GROUP;
+        for first in (0..joints).step_by(batch) {
+            let range = first..joints.min(first + batch);
+            let results = self.each_joint(
+                range.clone(),
+                |joint| filter.noise(joint),
+                (4, filter.carried()),
+                filter.nanoseconds(),
+                interrupt,
+                |joint, mut path, spare, rows| {
+                    for round in 0..filter.rounds() {
+                        if round > 0 {
+                            path.roll_out();
+                        }
+                        filter.smooth(joint, path.columns(), spare, interrupt)?;
+                        path.follow_vectors();
                     }
-                    filter.smooth(joint, path.columns(), spare, interrupt)?;
-                    path.follow_vectors();
-                }
-                store(&path, self.clip.at(0, joint), rows);
-                Ok(())
-            },
-        )?;
-        interleave(&results, 4, 0..4, joints, out)
+                    store(&path, self.clip.at(0, joint), rows);
+                    Ok(())
+                },
+            )?;
+            interleave(&results, (4, 0..4), range, joints, out)?;
+        }
+        Ok(())
     }
 
     /// Filters a translation `(frames, 3)` with the parameters and the confidence of the first joint.
-    fn translate(
+    pub(super) fn translate(
         &self,
         filter: &impl Smooth,
         values: &[T],
@@ -314,10 +322,11 @@ pub fn develop<T: Real>(
     check_length("reference", samples * 4, reference.len())?;
     check_length("development", samples * 3, development.len())?;
     check_length("vectors", samples * 3, vectors.len())?;
+    let joints = input.clip.joints();
     let results = input.each_joint(
+        0..joints,
         |_| 0.0,
-        WIDTH,
-        false,
+        (WIDTH, false),
         0,
         interrupt,
         |_, path, _, rows: &mut [f64]| {
@@ -330,8 +339,7 @@ pub fn develop<T: Real>(
             Ok(())
         },
     )?;
-    let joints = input.clip.joints();
-    interleave(&results, WIDTH, 0..4, joints, reference)?;
-    interleave(&results, WIDTH, 4..7, joints, development)?;
-    interleave(&results, WIDTH, 7..10, joints, vectors)
+    interleave(&results, (WIDTH, 0..4), 0..joints, joints, reference)?;
+    interleave(&results, (WIDTH, 4..7), 0..joints, joints, development)?;
+    interleave(&results, (WIDTH, 7..10), 0..joints, joints, vectors)
 }

@@ -27,29 +27,29 @@ pub(in crate::filters) fn store<T: Real>(joint: &Joint<'_>, first: [T; 4], rows:
     }
 }
 
-/// Takes the numbers of `range` out of rows of `width`, which stand one joint after the other in `from`, and writes them frame
-/// by frame, `(frames, joints, range)`.
+/// Takes the numbers of `columns` out of rows of `width`, which stand one joint of `range` after the other in `from`, and writes them
+/// to the places of these joints, frame by frame, `(frames, joints, columns)`.
 pub(in crate::filters) fn interleave<T: Real>(
     from: &[T],
-    width: usize,
+    (width, columns): (usize, Range<usize>),
     range: Range<usize>,
     joints: usize,
     out: &mut [T],
 ) -> Result<(), Error> {
-    let columns = range.len();
-    let row = joints * columns;
+    let count = columns.len();
+    let row = joints * count;
     if out.is_empty() {
         return Ok(());
     }
     let frames = out.len() / row;
     let tasks: Vec<&mut [T]> = out.chunks_mut(TASK * row).collect();
-    parallel::for_each(tasks, frames * row, |task, out| {
+    parallel::for_each(tasks, frames * range.len() * count, |task, out| {
         for (chunk, out) in out.chunks_mut(CHUNK * row).enumerate() {
             let start = task * TASK + chunk * CHUNK;
-            for joint in 0..joints {
-                let source = from[(joint * frames + start) * width..].chunks_exact(width);
+            for (place, joint) in range.clone().enumerate() {
+                let source = from[(place * frames + start) * width..].chunks_exact(width);
                 for (row, source) in out.chunks_exact_mut(row).zip(source) {
-                    row[joint * columns..][..columns].copy_from_slice(&source[range.clone()]);
+                    row[joint * count..][..count].copy_from_slice(&source[columns.clone()]);
                 }
             }
         }

@@ -11,28 +11,37 @@
 //! - `about`: the vectors of all joints about a pilot;
 //! - `body`: all joints together along the axes of the body;
 //! - `patches`: all joints by groups of similar patches;
+//! - `low_pass`: a fixed cut-off for all joints;
 //! - `rank`: all joints as few movements at a time;
-//! - `gains`: the learned last step.
+//! - `gains`: the learned last step;
+//! - `steps`, `products`, `symmetric`: which joints move together, products of matrices, eigenvectors;
+//! - `sums`: means of what overlapping pieces say.
 
 mod about;
 mod axes;
 mod body;
 mod gains;
 mod joint;
+mod low_pass;
 mod patches;
 mod penalised;
+mod products;
 mod rank;
 mod spectrum;
+mod steps;
 mod strength;
+mod sums;
+mod symmetric;
 
-use super::development::{Columns, Smooth};
-use crate::Error;
+use super::development::{Columns, Input, Smooth};
 use crate::clip::Planes;
 use crate::error::check_length;
 use crate::parallel::Interrupt;
+use crate::{ClipView, Error};
 pub use about::Noisy;
 pub use body::smooth_body;
 pub use gains::{Network, smooth_gains};
+pub use low_pass::LowPass;
 pub use patches::smooth_patches;
 pub use rank::smooth_rank;
 use strength::Candidates;
@@ -79,6 +88,34 @@ impl Smoother {
             }
             _ => Ok(()),
         }
+    }
+}
+
+/// The smoother of paths of one length, without rotations.
+#[derive(Debug, Clone)]
+pub(crate) struct PathSmoother(Smoother);
+
+impl PathSmoother {
+    /// For paths of so many frames.
+    pub(crate) fn new(frames: usize) -> Self {
+        Self(Smoother::new(frames, Vec::new(), 0.0))
+    }
+
+    /// Smooths a path `(frames, 3)` whose coordinates have noise of this deviation.
+    pub(crate) fn smooth(
+        &self,
+        path: &[f64],
+        noise: f64,
+        out: &mut [f64],
+        interrupt: &Interrupt,
+    ) -> Result<(), Error> {
+        let input = Input {
+            clip: ClipView::new(&[], path.len() / 3, 0)?,
+            confidence: None,
+            reference_sigma: &[REFERENCE_SIGMA],
+        };
+        let smoother = Smoother { translation_noise: noise, ..self.0.clone() };
+        input.translate(&smoother, path, out, interrupt)
     }
 }
 

@@ -50,6 +50,7 @@ type Scores = [f64; ORDERS * CUTOFFS];
 pub(super) struct Candidates {
     frames: usize,
     block: usize,
+    transform: Transform,
     starts: Vec<usize>,
     /// Logarithms of the cut-offs.
     logs: [[f64; CUTOFFS]; ORDERS],
@@ -117,7 +118,8 @@ impl Candidates {
                 offsets[order * CUTOFFS + c] = freedom * (2.0 / TEMPERATURE) - logs * (LIKELIHOOD / 2.0);
             }
         }
-        Self { frames, block, starts, logs, edges, factors, offsets }
+        let transform = Transform::new(block);
+        Self { frames, block, transform, starts, logs, edges, factors, offsets }
     }
 
     /// How many frames the columns have.
@@ -128,7 +130,7 @@ impl Candidates {
     /// Memory for [`Candidates::choose`].
     pub(super) fn memory(&self) -> Memory {
         Memory {
-            transform: Transform::new(self.block),
+            transform: self.transform.clone(),
             powers: vec![[0.0; BATCH]; self.block],
             bins: vec![[0.0; BATCH]; self.edges.len() - 1],
             scores: Vec::with_capacity(self.starts.len()),
@@ -194,21 +196,26 @@ impl Candidates {
         // Two frames have no third difference.
         let rows = self.frames.saturating_sub(order);
         let centre = |block: usize| self.starts[block] as f64 + (self.block - 1) as f64 / 2.0;
-        let mut after = 0;
-        for (row, softness) in softness[..rows].iter_mut().enumerate() {
-            let t = (row + middle) as f64;
-            while after < settled.len() && centre(after) < t {
-                after += 1;
-            }
-            *softness = match (after.checked_sub(1), settled.get(after)) {
-                (None, Some(first)) => *first,
-                (Some(last), None) => settled[last],
-                (Some(before), Some(next)) => {
-                    let part = (t - centre(before)) / (centre(after) - centre(before));
-                    settled[before] + (next - settled[before]) * part
+        // From one centre to the next, and before the first and beyond the last, it is a straight line.
+        let last = settled.len() - 1;
+        let mut row = 0;
+        for next in 0..=settled.len() {
+            let end = match self.starts.get(next) {
+                Some(start) if next <= last => {
+                    (start + self.block.div_ceil(2)).saturating_sub(middle).min(rows)
                 }
-                (None, None) => 0.0,
+                _ => rows,
             };
+            let before = next.saturating_sub(1);
+            let slope = if next == 0 || next > last {
+                0.0
+            } else {
+                (settled[next] - settled[before]) / (centre(next) - centre(before))
+            };
+            for (t, softness) in softness.iter_mut().enumerate().take(end).skip(row) {
+                *softness = settled[before] + slope * ((t + middle) as f64 - centre(before));
+            }
+            row = row.max(end);
         }
         exponentials(&mut softness[..rows], power);
     }

@@ -19,7 +19,7 @@ const BETWEEN: [[f32; 3]; CELL] =
     [[0.375, 0.625, 0.0], [0.125, 0.875, 0.0], [0.0, 0.875, 0.125], [0.0, 0.625, 0.375]];
 
 /// Estimated nanoseconds per frame and joint of the vectors, of the powers, and of the gains.
-const NANOSECONDS: [usize; 3] = [60, 100, 400];
+const NANOSECONDS: [usize; 3] = [100, 100, 400];
 
 /// What all blocks share.
 #[derive(Debug)]

@@ -17,10 +17,9 @@ mod network;
 mod scales;
 mod vectors;
 
-use super::about::Noisy;
+use super::about::{Noisy, TASK};
 use crate::error::check_length;
 use crate::parallel::Interrupt;
-use crate::rotations::continuity::make_continuous;
 use crate::{ClipMut, ClipView, Error, Real};
 pub use network::Network;
 use network::WIDTH;
@@ -101,10 +100,9 @@ pub fn smooth_gains<T: Real>(
     if out.is_empty() {
         return Ok(());
     }
-    let joints: Vec<usize> =
-        (0..noisy.clip.joints()).filter(|&joint| noisy.noise[joint] >= LEAST_NOISE).collect();
+    let joints = noisy.joints(LEAST_NOISE);
     if frames < FEWEST || joints.is_empty() {
-        return noisy.moved(&[], &[], out);
+        return noisy.unmoved(out);
     }
     let axes = Axes::find(noisy, &joints, interrupt)?;
     let step =
@@ -114,11 +112,12 @@ pub fn smooth_gains<T: Real>(
         let start = number * BLOCK;
         let end = (start + BLOCK).min(frames);
         let moves = step.moves(start..end, interrupt)?;
-        let part =
-            Noisy { clip: noisy.clip.slice(start, end), pilot: noisy.pilot.slice(start, end), ..*noisy };
-        part.moved(&joints, &moves, out)?;
+        noisy.each_part(TASK, out, 0, |first, out| {
+            noisy.moved(&joints, start + first, |joint, c| &moves[joint].row(c)[first..], out);
+            Ok(())
+        })?;
     }
-    make_continuous(out, noisy.clip.joints())
+    noisy.sign(out)
 }
 
 #[cfg(test)]

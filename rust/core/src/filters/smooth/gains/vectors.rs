@@ -1,23 +1,18 @@
 //! The columns of one joint, and the principal axes along which they lie.
 
-use super::super::about::{CHUNK, Noisy, logarithms};
-use super::super::body::inner_product;
-use super::super::rank::eigen;
+use super::super::about::{About, Noisy};
+use super::super::products::padded;
+use super::super::steps;
+use super::super::symmetric::leading;
 use super::basis::SOURCES;
 use super::scales::Phases;
 use super::{AXES, CELL, WIDEST};
 use crate::clip::Planes;
 use crate::eigen::eigenvectors;
-use crate::parallel::{self, Interrupt};
+use crate::parallel::Interrupt;
 use crate::simd::multiversion;
 use crate::{ClipView, Error, Real};
 use std::ops::Range;
-
-/// Frames per task where steps are multiplied.
-const TASK: usize = 2048;
-
-/// Tasks whose products are held together.
-const PASS: usize = 16;
 
 /// Principal axes of the steps of the pilot.
 #[derive(Debug)]
@@ -36,17 +31,22 @@ impl Axes {
         interrupt: &Interrupt,
     ) -> Result<Self, Error> {
         let width = 3 * joints.len();
-        let reach = if width > WIDEST { 3 } else { width };
-        let products = products(noisy, joints, reach, interrupt)?;
+        // The axes of a joint need the products of its own steps only.
+        let together = if width > WIDEST { 1 } else { joints.len() };
         let mut found = Vec::with_capacity(joints.len());
-        for joint in 0..joints.len() {
-            let row = |i: usize| (3 * joint + i) * reach + if width > WIDEST { 0 } else { 3 * joint };
-            let mut block: Vec<f64> = (0..3).flat_map(|i| &products[row(i)..row(i) + 3]).copied().collect();
-            let axes = eigenvectors(&mut block, 3, interrupt)?;
-            found
-                .push(std::array::from_fn(|i| std::array::from_fn(|axis| f32::from_f64(axes[i * 3 + axis]))));
+        let mut body = Vec::new();
+        for joints in joints.chunks(together) {
+            let products = steps::of_all(noisy, joints, interrupt)?;
+            for joint in 0..joints.len() {
+                let mut block = square(&products, joints.len(), 3 * joint..3 * joint + 3);
+                let axes = eigenvectors(&mut block, 3, interrupt)?;
+                let component = |i: usize, axis: usize| f32::from_f64(axes[i * 3 + axis]);
+                found.push(std::array::from_fn(|i| std::array::from_fn(|axis| component(i, axis))));
+            }
+            if width <= WIDEST {
+                body = strongest(square(&products, joints.len(), 0..width), &found, interrupt)?;
+            }
         }
-        let body = if width > WIDEST { Vec::new() } else { strongest(products, &found, interrupt)? };
         Ok(Self { joints: found, body })
     }
 
@@ -56,51 +56,11 @@ impl Axes {
     }
 }
 
-/// Sums over frames of the products of steps; of each column with the `reach` columns of all joints, or of its own joint.
-fn products<T: Real>(
-    noisy: &Noisy<'_, T>,
-    joints: &[usize],
-    reach: usize,
-    interrupt: &Interrupt,
-) -> Result<Vec<f64>, Error> {
-    let frames = noisy.clip.frames();
-    let width = 3 * joints.len();
-    let mut total = vec![0.0; width * reach];
-    let starts: Vec<usize> = (1..frames).step_by(TASK).collect();
-    for pass in starts.chunks(PASS) {
-        let work = pass.len() * TASK * width * (100 + reach);
-        let parts = parallel::map(pass.to_vec(), work, |_, start| {
-            interrupt.check()?;
-            let length = TASK.min(frames - start);
-            let mut steps = Planes::<f64>::new(width, length);
-            for (i, &joint) in joints.iter().enumerate() {
-                let scale = 2.0 / noisy.noise[joint];
-                let before = noisy.pilot.slice(start - 1, start - 1 + length);
-                let after = noisy.pilot.slice(start, start + length);
-                displacements(before, after, joint, |t, step| {
-                    for (c, x) in step.into_iter().enumerate() {
-                        steps.row_mut(3 * i + c)[t] = x.to_f64() * scale;
-                    }
-                });
-            }
-            let mut part = vec![0.0; width * reach];
-            for i in 0..width {
-                let first = if reach == width { 0 } else { i - i % 3 };
-                for j in first..=i {
-                    let product = inner_product(steps.row(i), steps.row(j));
-                    part[i * reach + j - first] = product;
-                    part[j * reach + i - first] = product;
-                }
-            }
-            Ok(part)
-        })?;
-        for part in parts {
-            for (sum, product) in total.iter_mut().zip(part) {
-                *sum += product;
-            }
-        }
-    }
-    Ok(total)
+/// Some rows of the products of steps, and the same columns; of the products those right of the diagonal are read.
+fn square(products: &[f64], joints: usize, rows: Range<usize>) -> Vec<f64> {
+    let stride = padded(3 * joints);
+    let row = |i: usize| rows.clone().map(move |j| products[i.min(j) * stride + i.max(j)]);
+    rows.clone().flat_map(row).collect()
 }
 
 /// Components of the axes of the joints along the eigenvectors with the largest eigenvalues.
@@ -110,44 +70,18 @@ fn strongest(
     interrupt: &Interrupt,
 ) -> Result<Vec<[Vec<f32>; 3]>, Error> {
     let width = 3 * joints.len();
-    let (values, vectors) = eigen(&mut products, width, interrupt)?;
-    let mut order: Vec<usize> = (0..width).collect();
-    order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
-    order.truncate(AXES.min(joints.len()));
-    let component = |joint: usize, axes: &[[f32; 3]; 3], axis: usize, vector: usize| {
-        let vector = &vectors[vector * width + 3 * joint..][..3];
+    let (_, vectors) = leading(&mut products, width, 0.0, interrupt)?;
+    let component = |joint: usize, axes: &[[f32; 3]; 3], axis: usize, vector: &[f64]| {
+        let vector = &vector[3 * joint..][..3];
         f32::from_f64(vector.iter().zip(axes).map(|(x, row)| x * f64::from(row[axis])).sum())
     };
     let of_joint = |(joint, axes)| {
-        std::array::from_fn(|axis| order.iter().map(|&vector| component(joint, axes, axis, vector)).collect())
+        std::array::from_fn(|axis| {
+            let strongest = vectors.chunks_exact(width).take(AXES.min(joints.len()));
+            strongest.map(|vector| component(joint, axes, axis, vector)).collect()
+        })
     };
     Ok(joints.iter().enumerate().map(of_joint).collect())
-}
-
-/// Half rotation vectors of a joint, from one clip to another, the shorter way.
-fn displacements<T: Real>(
-    from: ClipView<'_, T>,
-    to: ClipView<'_, T>,
-    joint: usize,
-    mut take: impl FnMut(usize, [T; 3]),
-) {
-    for start in (0..from.frames()).step_by(CHUNK) {
-        let length = CHUNK.min(from.frames() - start);
-        let mut samples = [[[T::ZERO; CHUNK]; 4]; 2];
-        for i in 0..length {
-            for (samples, clip) in samples.iter_mut().zip([from, to]) {
-                for (plane, x) in samples.iter_mut().zip(clip.at(start + i, joint)) {
-                    plane[i] = x;
-                }
-            }
-        }
-        let mut found = [[T::ZERO; CHUNK]; 3];
-        logarithms(&samples[0], &samples[1], &mut found);
-        let [x, y, z] = found;
-        for (i, ((x, y), z)) in x.into_iter().zip(y).zip(z).enumerate().take(length) {
-            take(start + i, [x, y, z]);
-        }
-    }
 }
 
 /// The columns of a joint along its axes, in units of its noise: all sources but the projection on the axes of the body, which is 0.
@@ -161,42 +95,26 @@ pub(super) fn sources<T: Real>(
     let frames = range.len();
     let mut result = Phases::default();
     result.reshape(3 * SOURCES, frames.div_ceil(CELL));
-    let pilot = noisy.pilot.slice(range.start, range.end);
-    let scale = 2.0 / noisy.noise[joint];
     let mut vectors = Planes::<f32>::new(3, frames);
     let mut turned = vec![0.0; frames];
-    let others = [noisy.clip, noisy.pilot, patches];
-    for (source, other) in others.into_iter().enumerate() {
-        let [x, y, z] = vectors.rows_mut::<3>(0);
-        let mut write = |t: usize, v: [f64; 3]| {
-            [x[t], y[t], z[t]] = v.map(f32::from_f64);
-        };
-        if source == 1 {
-            // The development of the pilot; only its differences count.
-            let mut sum = [0.0; 3];
-            write(0, sum);
-            displacements(pilot.slice(0, frames - 1), pilot.slice(1, frames), joint, |t, step| {
-                for (sum, step) in sum.iter_mut().zip(step) {
-                    *sum += step.to_f64() * scale;
-                }
-                write(t + 1, sum);
-            });
-        } else {
-            displacements(pilot, other.slice(range.start, range.end), joint, |t, way| {
-                let factor = match noisy.confidence {
-                    Some(confidence) if source == 0 => {
-                        scale * confidence[(range.start + t) * noisy.clip.joints() + joint].to_f64()
-                    }
-                    _ => scale,
-                };
-                write(t, way.map(|x| x.to_f64() * factor));
-            });
+    let mut take = |source: usize, planes: [&[f64]; 3]| {
+        for (c, plane) in planes.into_iter().enumerate() {
+            for (to, x) in vectors.row_mut(c).iter_mut().zip(plane) {
+                *to = f32::from_f64(*x);
+            }
         }
         for axis in 0..3 {
             combine(vectors.rows_from::<3>(0), axes.map(|row| row[axis]), &mut turned);
             result.load(3 * source + axis, &turned, source > 0);
         }
-    }
+    };
+    let mut about = About::default();
+    noisy.joint_vectors(joint, range.clone(), &mut about);
+    take(0, about.beside());
+    take(1, about.mean());
+    let to_patches = Noisy { clip: patches, confidence: None, ..*noisy };
+    to_patches.joint_vectors(joint, range.clone(), &mut about);
+    take(2, about.beside());
     for axis in 0..3 {
         result.load(3 * (SOURCES - 1) + axis, &[], false);
     }

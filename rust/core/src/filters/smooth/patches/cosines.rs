@@ -1,6 +1,7 @@
 //! Patches as cosine coefficients, and back.
 
-use super::{COEFFICIENTS, LENGTH};
+use super::wiener::LANES;
+use super::{APART, COEFFICIENTS, LENGTH};
 use crate::Real;
 use crate::simd::multiversion;
 use std::f64::consts::PI;
@@ -37,16 +38,10 @@ impl Cosines {
         transform(column, &self.basis, planes);
     }
 
-    /// Coefficients of one patch.
-    pub(super) fn of_one(&self, column: &[f64], out: &mut [f64]) {
-        for (x, cosine) in out.iter_mut().zip(&self.basis) {
-            *x = column.iter().zip(cosine).map(|(x, cosine)| x * cosine).sum();
-        }
-    }
-
-    /// Adds the patch with the given coefficients.
-    pub(super) fn add_patch(&self, coefficients: &[f64], out: &mut [f64; LENGTH]) {
-        add_patch(coefficients, &self.basis, out);
+    /// Adds the first patches of some that begin [`APART`] frames after each other, given by their coefficients, to the frames that they
+    /// hold.
+    pub(super) fn add_patches(&self, coefficients: &[[f64; LANES]], patches: usize, out: &mut [f64]) {
+        add_patches(coefficients, &self.basis, patches, out);
     }
 }
 
@@ -82,11 +77,21 @@ multiversion! {
 }
 
 multiversion! {
-    fn add_patch<T: Real>(coefficients: &[T], basis: &[[T; LENGTH]; COEFFICIENTS], out: &mut [T; LENGTH]) {
+    fn add_patches<T: Real>(
+        coefficients: &[[T; LANES]], basis: &[[T; LENGTH]; COEFFICIENTS], patches: usize, out: &mut [T],
+    ) {
         let coefficients = &coefficients[..COEFFICIENTS];
-        for k in 0..COEFFICIENTS {
+        for patch in 0..patches {
+            let mut frames = [T::ZERO; LENGTH];
+            for k in 0..COEFFICIENTS {
+                let x = coefficients[k][patch];
+                for l in 0..LENGTH {
+                    frames[l] += x * basis[k][l];
+                }
+            }
+            let out = &mut out[patch * APART..][..LENGTH];
             for l in 0..LENGTH {
-                out[l] += coefficients[k] * basis[k][l];
+                out[l] += frames[l];
             }
         }
     }
@@ -97,25 +102,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cosines_are_orthonormal_and_all_ways_to_coefficients_agree() {
+    fn cosines_are_orthonormal_and_come_back() {
         let cosines = Cosines::new();
-        let column: Vec<f64> = (0..64).map(|i| f64::from((i * i * 7 + i * 3) % 101)).collect();
-        let mut planes = vec![vec![0.0; 32]; COEFFICIENTS];
-        let mut rows = planes.iter_mut();
-        cosines.of_all(&column, std::array::from_fn(|_| &mut rows.next().expect("as many planes")[..]));
-        for start in 0..32 {
-            let mut one = [0.0; COEFFICIENTS];
-            cosines.of_one(&column[start..start + LENGTH], &mut one);
-            for (k, x) in one.into_iter().enumerate() {
-                assert!((planes[k][start] - x).abs() < 1e-11);
-                let mut patch = [0.0; LENGTH];
-                let unit: [f64; COEFFICIENTS] = std::array::from_fn(|i| f64::from(u8::from(i == k)));
-                cosines.add_patch(&unit, &mut patch);
-                let mut back = [0.0; COEFFICIENTS];
-                cosines.of_one(&patch, &mut back);
-                for (x, y) in back.iter().zip(unit) {
-                    assert!((x - y).abs() < 1e-14);
-                }
+        for k in 0..COEFFICIENTS {
+            let mut column = vec![0.0; 9 + 2 * LENGTH + 2 * LANE];
+            let mut coefficients = [[0.0; LANES]; COEFFICIENTS];
+            coefficients[k][2] = 1.0;
+            cosines.add_patches(&coefficients, 3, &mut column);
+            let first = 2 * APART;
+            assert!(column[..first].iter().chain(&column[first + LENGTH..]).all(|&x| x == 0.0));
+            let mut planes = vec![vec![0.0; LANE]; COEFFICIENTS];
+            let mut rows = planes.iter_mut();
+            cosines.of_all(&column, std::array::from_fn(|_| &mut rows.next().expect("as many planes")[..]));
+            for (other, plane) in planes.iter().enumerate() {
+                assert!((plane[first] - f64::from(u8::from(other == k))).abs() < 1e-14);
             }
         }
     }

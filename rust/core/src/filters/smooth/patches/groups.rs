@@ -1,90 +1,125 @@
 //! Which joints move alike.
 
+use super::super::about::Noisy;
+use super::super::products::padded;
+use super::super::steps;
 use super::COMPANIONS;
-use super::wiener::{LANE, add_products};
-use crate::Error;
-use crate::clip::Planes;
 use crate::parallel::{self, Interrupt};
+use crate::{Error, Real};
 
 /// Differences of similarity below which two joints are equally alike.
 const SAME: f64 = 1e-9;
 
-/// Steps whose products are added together: a whole body of them stays in the first-level cache.
-const CHUNK: usize = 48;
+/// Joints whose products with each other are there at a time: memory does not grow with the square of all joints.
+const TILE: usize = 64;
 
-/// Tasks at most: each has sums of its own, for every pair of joints.
-const TASKS: usize = 16;
-
-/// For each joint itself and the others that move most like it; `mean` holds the joints' developments.
+/// For each joint itself and the others that move most like it, as places in `joints`.
 ///
-/// With the steps `v` from frame to frame and `M_ij = Σ_t v_i v_jᵀ`, the similarity of two joints is
+/// With the steps `v` of the pilot from frame to frame and `M_ij = Σ_t v_i v_jᵀ`, the similarity of two joints is
 /// `‖M_ij‖ / √(‖M_ii‖ ‖M_jj‖)`, Frobenius norms. Among equals the first joint is taken.
-pub(super) fn groups(
-    mean: &[Planes<f64>],
-    frames: usize,
+pub(super) fn groups<T: Real>(
+    noisy: &Noisy<'_, T>,
+    joints: &[usize],
     interrupt: &Interrupt,
 ) -> Result<Vec<Vec<usize>>, Error> {
-    let joints = mean.len();
-    let shared = norms(mean, frames, interrupt)?;
-    let similarity = |i: usize, j: usize| {
-        let own = (shared[i * joints + i] * shared[j * joints + j]).sqrt();
-        if own > 0.0 { shared[i * joints + j] / own } else { 0.0 }
+    let tiles: Vec<&[usize]> = joints.chunks(TILE).collect();
+    let within = tiles.iter().map(|tile| {
+        let width = padded(3 * tile.len());
+        Ok(norms(&steps::of_all(noisy, tile, interrupt)?, width, [tile.len(); 2], true))
+    });
+    let within = within.collect::<Result<Vec<_>, Error>>()?;
+    let own: Vec<f64> = within
+        .iter()
+        .zip(&tiles)
+        .flat_map(|(norms, tile)| (0..tile.len()).map(|i| norms[i * tile.len() + i]))
+        .collect();
+    let similarity = |i: usize, j: usize, shared: f64| {
+        let scale = (own[i] * own[j]).sqrt();
+        if scale > 0.0 { shared / scale } else { 0.0 }
     };
-    let group = |joint: usize| {
-        let mut members = vec![joint];
-        while members.len() < COMPANIONS.min(joints) {
-            let others = || (0..joints).filter(|other| !members.contains(other));
-            let best = others().map(|other| similarity(joint, other)).fold(0.0, f64::max);
-            let first = others().find(|&other| similarity(joint, other) >= best - SAME);
-            members.extend(first);
-        }
-        members
-    };
-    Ok((0..joints).map(group).collect())
-}
-
-/// Frobenius norms of the products of the steps of each two joints, `(joints, joints)`.
-fn norms(mean: &[Planes<f64>], frames: usize, interrupt: &Interrupt) -> Result<Vec<f64>, Error> {
-    let joints = mean.len();
-    let steps = frames.saturating_sub(1);
-    let width = (joints * 3).next_multiple_of(LANE);
-    let task = steps.div_ceil(TASKS).next_multiple_of(CHUNK);
-    let tasks: Vec<usize> = (0..steps).step_by(task).collect();
-    let work = steps * width * width / 16;
-    let sums = parallel::map(tasks, work, |_, first| {
-        let mut products = Planes::new(1, width * width);
-        let mut rows = Planes::new(1, CHUNK * width);
-        for start in (first..steps.min(first + task)).step_by(CHUNK) {
-            interrupt.check()?;
-            let length = CHUNK.min(steps - start);
-            let rows = &mut rows.row_mut(0)[..length * width];
-            for (joint, planes) in mean.iter().enumerate() {
-                for (c, column) in planes.rows_from::<3>(0).into_iter().enumerate() {
-                    let ends = column[start..].windows(2);
-                    for (row, ends) in rows.chunks_exact_mut(width).zip(ends) {
-                        row[joint * 3 + c] = ends[1] - ends[0];
-                    }
-                }
+    let mut alike = vec![Alike::default(); joints.len()];
+    for (a, tile) in tiles.iter().enumerate() {
+        let first = a * TILE;
+        for i in 0..tile.len() {
+            for j in (0..tile.len()).filter(|&j| j != i) {
+                let shared = within[a][i * tile.len() + j];
+                alike[first + i].offer(first + j, similarity(first + i, first + j, shared));
             }
-            add_products(rows, width, products.row_mut(0));
         }
-        Ok(products)
-    })?;
-    let mut norms = vec![0.0; joints * joints];
-    for i in 0..joints {
-        for j in i..joints {
-            let mut square = 0.0;
-            for a in i * 3..i * 3 + 3 {
-                for b in j * 3..j * 3 + 3 {
-                    // Of the products, only blocks from the diagonal on are there.
-                    let at = a.min(b) * width + a.max(b);
-                    let sum: f64 = sums.iter().map(|products| products.row(0)[at]).sum();
-                    square += sum * sum;
-                }
+        for (b, (other, shared)) in tiles.iter().zip(beside(noisy, &tiles, a, interrupt)?).enumerate() {
+            for (at, shared) in shared.into_iter().enumerate() {
+                let (i, j) = (first + at / other.len(), b * TILE + at % other.len());
+                let similar = similarity(i, j, shared);
+                alike[i].offer(j, similar);
+                alike[j].offer(i, similar);
             }
-            norms[i * joints + j] = square.sqrt();
-            norms[j * joints + i] = square.sqrt();
         }
     }
-    Ok(norms)
+    let group = |(joint, alike): (usize, &Alike)| {
+        let mut members = vec![joint];
+        members.extend(alike.first());
+        members.truncate(COMPANIONS);
+        members
+    };
+    Ok(alike.iter().enumerate().map(group).collect())
+}
+
+/// Those that one joint may be most alike.
+#[derive(Debug, Clone, Default)]
+struct Alike(Vec<(usize, f64)>);
+
+impl Alike {
+    /// Takes note of a joint, after all that come before it.
+    fn offer(&mut self, joint: usize, similarity: f64) {
+        // One that comes later and is no more alike is never the first among equals.
+        if self.0.last().is_none_or(|&(_, most)| similarity > most) {
+            self.0.retain(|&(_, other)| other >= similarity - SAME);
+            self.0.push((joint, similarity));
+        }
+    }
+
+    fn first(&self) -> Option<usize> {
+        self.0.first().map(|&(joint, _)| joint)
+    }
+}
+
+/// Of the joints of one tile with those of each tile: the norms of their products; none but with the tiles after it.
+fn beside<T: Real>(
+    noisy: &Noisy<'_, T>,
+    tiles: &[&[usize]],
+    a: usize,
+    interrupt: &Interrupt,
+) -> Result<Vec<Vec<f64>>, Error> {
+    let parts = steps::parts(noisy.clip.frames());
+    let tasks = (a + 1..tiles.len()).flat_map(|b| parts.iter().map(move |part| (b, part.clone())));
+    let work = noisy.clip.frames() * (tiles.len() - a) * TILE * TILE;
+    let mut sums = parallel::map(tasks.collect(), work, |_, (b, part)| {
+        steps::between(noisy, tiles[a], tiles[b], part, interrupt)
+    })?
+    .into_iter();
+    let shared = |b: usize| {
+        if b <= a {
+            return Vec::new();
+        }
+        let products = steps::total(sums.by_ref().take(parts.len()).collect());
+        norms(&products, padded(3 * tiles[b].len()), [tiles[a].len(), tiles[b].len()], false)
+    };
+    Ok((0..tiles.len()).map(shared).collect())
+}
+
+/// Frobenius norms of the blocks of three rows and three columns of a matrix; of a symmetric one only blocks from the diagonal on
+/// are there.
+fn norms(products: &[f64], width: usize, [rows, columns]: [usize; 2], symmetric: bool) -> Vec<f64> {
+    let norm = |at: usize| {
+        let (i, j) = (at / columns, at % columns);
+        let mut square = 0.0;
+        for a in i * 3..i * 3 + 3 {
+            for b in j * 3..j * 3 + 3 {
+                let (a, b) = if symmetric { (a.min(b), a.max(b)) } else { (a, b) };
+                square += products[a * width + b] * products[a * width + b];
+            }
+        }
+        square.sqrt()
+    };
+    (0..rows * columns).map(norm).collect()
 }

@@ -34,13 +34,20 @@ use crate::{ClipMut, ClipView, Error, Real};
 const LENGTH: usize = 24;
 
 /// Cosine coefficients of a patch that are estimated, from the lowest on.
-const COEFFICIENTS: usize = 10;
+const COEFFICIENTS: usize = 8;
 
 /// Joints of a group: each joint, and the one that moves most like it.
 const COMPANIONS: usize = 2;
 
-/// Frames from one estimated patch to the next.
-const STEP: usize = 8;
+/// Frames from one model to the next.
+const STEP: usize = 24;
+
+/// Frames about the patch of a model within which those of the patches most like it are estimated with it that lie a multiple of
+/// [`APART`] away.
+const NEAR: usize = 21;
+
+/// Frames from one patch that is estimated with a model to the next.
+const APART: usize = 3;
 
 /// Frames within which similar patches are looked for, before and after.
 const RADIUS: usize = 256;
@@ -54,8 +61,8 @@ const SHORTEST: usize = LENGTH + NEIGHBORS - 1;
 /// Radians per component below which a joint has no noise: little more than roundings in float32.
 const LEAST_NOISE: f64 = 1e-6;
 
-/// Estimated nanoseconds per frame and joint of a round.
-const NANOSECONDS: usize = 2500;
+/// Estimated nanoseconds of a model and its estimates.
+const NANOSECONDS: usize = 20_000;
 
 /// Improves the pilot by groups of its similar patches.
 ///
@@ -77,18 +84,14 @@ pub fn smooth_patches<T: Real>(
     if out.is_empty() {
         return Ok(());
     }
-    noisy.moved(&[], &[], out)?;
-    let enough = |&noise: &f64| if noise < LEAST_NOISE { 0.0 } else { noise };
-    let noise: Vec<f64> = noisy.noise.iter().map(enough).collect();
-    if frames < SHORTEST || noise.iter().all(|&noise| noise <= 0.0) {
-        return Ok(());
+    if frames < SHORTEST || rounds == 0 || noisy.joints(LEAST_NOISE).is_empty() {
+        return noisy.unmoved(out);
     }
-    for _ in 0..rounds {
+    estimates::improve(noisy, out, interrupt)?;
+    for _ in 1..rounds {
         let pilot = out.to_vec();
-        let round = Noisy { pilot: ClipView::new(&pilot, frames, joints)?, noise: &noise, ..*noisy };
-        let mut about = round.vectors(interrupt)?;
-        estimates::improve(&mut about, frames, interrupt)?;
-        round.moved(&about.joints, &about.beside, out)?;
+        let round = Noisy { pilot: ClipView::new(&pilot, frames, joints)?, ..*noisy };
+        estimates::improve(&round, out, interrupt)?;
     }
     Ok(())
 }

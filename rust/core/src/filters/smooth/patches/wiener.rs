@@ -1,14 +1,15 @@
-//! The estimate of one patch.
+//! Patches that are alike as drawn from one normal distribution, and the estimates of noisy ones.
 
-use super::NEIGHBORS;
+use super::super::products::{LANE, add_products, padded};
+use super::{APART, NEAR, NEIGHBORS};
 use crate::Real;
 use crate::clip::Planes;
 use crate::simd::multiversion;
 
-/// Numbers of a row whose sums stay in registers while other rows go by; rows are padded to a multiple.
-pub(super) const LANE: usize = 16;
+/// Patches that are estimated together, at most: so many vectors of equations that are solved side by side.
+pub(super) const LANES: usize = (2 * NEAR / APART + 1).next_multiple_of(LANE);
 
-/// Rows of a matrix whose sums stay in registers together.
+/// Rows that are eliminated together; a patch has an even number of numbers.
 const PAIR: usize = 2;
 
 /// Of the covariance of the pilot's patches, how much counts.
@@ -17,60 +18,85 @@ const SHARE: f64 = 0.75;
 /// Of the total variance of the patches, how much the noise has at least: some hundred roundings of float64.
 const LEAST_VARIANCE: f64 = 1e-13;
 
-/// Length of a row that holds so many numbers, and one more: the right side of the equations.
+/// Length of a row that holds so many numbers.
 pub(super) fn width(numbers: usize) -> usize {
-    (numbers + 1).next_multiple_of(LANE)
+    padded(numbers)
 }
 
-/// The equations `(C + I) u = y − μ`, and the memory to solve them.
+/// Mean and covariance of patches: the equations `(C + I) u = y − μ`, and the memory to solve them.
 #[derive(Debug)]
-pub(super) struct System {
+pub(super) struct Model {
     numbers: usize,
-    width: usize,
     mean: Planes<f64>,
     around: Planes<f64>,
+    /// `C + I` and the right sides, a row for each number.
     matrix: Planes<f64>,
-    inverses: Planes<f64>,
+    /// How much the noise has of each number.
+    variance: f64,
+    inverses: Vec<f64>,
+    moves: Vec<[f64; LANES]>,
 }
 
-impl System {
+impl Model {
     pub(super) fn new(numbers: usize) -> Self {
         let width = width(numbers);
         Self {
             numbers,
-            width,
             mean: Planes::new(1, width),
             around: Planes::new(1, NEIGHBORS * width),
-            matrix: Planes::new(1, width * width),
-            inverses: Planes::new(1, numbers),
+            matrix: Planes::new(1, width * (width + LANES)),
+            variance: 1.0,
+            inverses: vec![0.0; numbers],
+            moves: vec![[0.0; LANES]; numbers],
         }
     }
 
-    /// Estimates a clean patch, as its difference from the pilot's: `x − (C + I)⁻¹ (p + x − μ)`.
-    ///
-    /// `rows` holds patches of the pilot, of which `alike` count, and `pilot` is the one whose estimate is asked for. `rest` is
-    /// `x`, and becomes the difference.
-    pub(super) fn estimate(&mut self, rows: &[f64], alike: &[usize], pilot: usize, rest: &mut [f64]) {
-        let (numbers, width) = (self.numbers, self.width);
+    /// Takes mean and covariance of the patches of the pilot that count, rows of numbers.
+    pub(super) fn learn(&mut self, rows: &[f64], alike: &[usize]) {
         let mean = self.mean.row_mut(0);
-        let around = &mut self.around.row_mut(0)[..alike.len() * width];
+        let stride = mean.len() + LANES;
+        let around = &mut self.around.row_mut(0)[..alike.len() * mean.len()];
         let matrix = self.matrix.row_mut(0);
-        let inverses = self.inverses.row_mut(0);
         centre(rows, alike, (SHARE / alike.len() as f64).sqrt(), mean, around);
         matrix.fill(0.0);
-        add_products(around, width, matrix);
-        let trace: f64 = (0..numbers).map(|i| matrix[i * width + i]).sum();
-        let variance = 1.0 + LEAST_VARIANCE * trace;
-        let pilot = &rows[pilot * width..][..numbers];
-        for i in 0..numbers {
-            matrix[i * width + i] += variance;
-            matrix[i * width + numbers] = pilot[i] + rest[i] - mean[i];
+        add_products(around, mean.len(), matrix, stride);
+        let trace: f64 = (0..self.numbers).map(|i| matrix[i * stride + i]).sum();
+        self.variance = 1.0 + LEAST_VARIANCE * trace;
+        for i in 0..self.numbers {
+            matrix[i * stride + i] += self.variance;
         }
-        eliminate(matrix, width, numbers, inverses);
-        substitute(matrix, width, numbers, inverses);
-        for (i, x) in rest.iter_mut().enumerate() {
-            *x -= variance * matrix[i * width + numbers];
+    }
+
+    /// Estimates clean patches, as differences from the pilot's: `x − (C + I)⁻¹ (p + x − μ)`, times a number for each.
+    ///
+    /// They begin [`APART`] frames after each other; of the first one, the numbers are at `p` in the planes of the pilot's patches, and
+    /// at `x` in those of the rest.
+    pub(super) fn estimate(
+        &mut self,
+        (pilot, p): (&Planes<f64>, usize),
+        (rest, x): (&Planes<f64>, usize),
+        times: &[f64; LANES],
+    ) -> &[[f64; LANES]] {
+        let mean = self.mean.row(0);
+        let stride = mean.len() + LANES;
+        let matrix = self.matrix.row_mut(0);
+        for (number, row) in matrix.chunks_exact_mut(stride).take(self.numbers).enumerate() {
+            let pilot = pilot.row(number)[p..].iter().step_by(APART);
+            let rest = rest.row(number)[x..].iter().step_by(APART);
+            for (right, (pilot, rest)) in row[mean.len()..].iter_mut().zip(pilot.zip(rest)) {
+                *right = pilot + rest - mean[number];
+            }
         }
+        eliminate(matrix, stride, self.numbers, &mut self.inverses);
+        substitute(matrix, stride, self.numbers, &self.inverses);
+        for ((number, row), moves) in matrix.chunks_exact(stride).enumerate().zip(&mut self.moves) {
+            let rest = rest.row(number)[x..].iter().step_by(APART);
+            let sources = rest.zip(&row[mean.len()..]).zip(times);
+            for (to, ((rest, solution), times)) in moves.iter_mut().zip(sources) {
+                *to = (rest - self.variance * solution) * times;
+            }
+        }
+        &self.moves
     }
 }
 
@@ -99,63 +125,64 @@ multiversion! {
 }
 
 multiversion! {
-    /// Adds the products `Σ_t x_t x_tᵀ` of rows to a matrix, from its diagonal on to the right.
-    pub(super) fn add_products<T: Real>(rows: &[T], width: usize, matrix: &mut [T]) {
-        for top in (0..width).step_by(PAIR) {
+    /// Gaussian elimination of a symmetric positive matrix, from its upper triangle and with right sides in the columns beyond it: what
+    /// is left is Cholesky's factor, its rows scaled by the pivots. The inverse pivots go to `inverses`.
+    fn eliminate<T: Real>(matrix: &mut [T], width: usize, n: usize, inverses: &mut [T]) {
+        for top in (0..n).step_by(PAIR) {
+            let (above, rows) = matrix.split_at_mut(top * width);
             for left in (top / LANE * LANE..width).step_by(LANE) {
                 let mut sums = [[T::ZERO; LANE]; PAIR];
-                for row in rows.chunks_exact(width) {
-                    let down: [T; PAIR] = std::array::from_fn(|i| row[top + i]);
-                    let along = &row[left..left + LANE];
-                    for j in 0..LANE {
-                        for i in 0..PAIR {
-                            sums[i][j] += down[i] * along[j];
+                for (pivot, inverse) in above.chunks_exact(width).zip(&inverses[..top]) {
+                    let along = &pivot[left..left + LANE];
+                    for i in 0..PAIR {
+                        let factor = pivot[top + i] * *inverse;
+                        for j in 0..LANE {
+                            sums[i][j] += factor * along[j];
                         }
                     }
                 }
                 for i in 0..PAIR {
-                    let to = &mut matrix[(top + i) * width + left..][..LANE];
+                    let row = &mut rows[i * width + left..][..LANE];
                     for j in 0..LANE {
-                        to[j] += sums[i][j];
+                        row[j] -= sums[i][j];
                     }
                 }
+            }
+            for i in 0..PAIR {
+                let (pivots, row) = rows.split_at_mut(i * width);
+                let row = &mut row[..width];
+                for (pivot, inverse) in pivots.chunks_exact(width).zip(&inverses[top..]) {
+                    let factor = pivot[top + i] * *inverse;
+                    for j in top..width {
+                        row[j] -= factor * pivot[j];
+                    }
+                }
+                inverses[top + i] = T::ONE / row[top + i];
             }
         }
     }
 }
 
 multiversion! {
-    /// Gaussian elimination of a symmetric positive matrix, from its upper triangle and with the right side in column `n`: what
-    /// is left is Cholesky's factor, its rows scaled by the pivots. The inverse pivots go to `inverses`.
-    fn eliminate<T: Real>(matrix: &mut [T], width: usize, n: usize, inverses: &mut [T]) {
-        for i in 0..n {
-            let (above, row) = matrix.split_at_mut(i * width);
-            for left in (i / LANE * LANE..width).step_by(LANE) {
+    /// Solves the eliminated equations, from the last on; the solutions take the place of the right sides.
+    fn substitute<T: Real>(matrix: &mut [T], width: usize, n: usize, inverses: &[T]) {
+        let first = width - LANES;
+        for i in (0..n).rev() {
+            let (above, below) = matrix.split_at_mut((i + 1) * width);
+            let row = &mut above[i * width..];
+            for lane in (first..width).step_by(LANE) {
                 let mut sums = [T::ZERO; LANE];
-                for (pivot, inverse) in above.chunks_exact(width).zip(&inverses[..i]) {
-                    let factor = pivot[i] * *inverse;
-                    let along = &pivot[left..left + LANE];
+                for (factor, solved) in row[i + 1..n].iter().zip(below.chunks_exact(width)) {
+                    let along = &solved[lane..lane + LANE];
                     for j in 0..LANE {
-                        sums[j] += factor * along[j];
+                        sums[j] += *factor * along[j];
                     }
                 }
-                let row = &mut row[left..left + LANE];
+                let right = &mut row[lane..lane + LANE];
                 for j in 0..LANE {
-                    row[j] -= sums[j];
+                    right[j] = (right[j] - sums[j]) * inverses[i];
                 }
             }
-            inverses[i] = T::ONE / row[i];
-        }
-    }
-}
-
-/// Solves the eliminated equations, from the last on; the solution takes the place of the right side.
-fn substitute(matrix: &mut [f64], width: usize, n: usize, inverses: &[f64]) {
-    for j in (0..n).rev() {
-        let x = matrix[j * width + n] * inverses[j];
-        matrix[j * width + n] = x;
-        for row in matrix[..j * width].chunks_exact_mut(width) {
-            row[n] -= row[j] * x;
         }
     }
 }
@@ -164,42 +191,67 @@ fn substitute(matrix: &mut [f64], width: usize, n: usize, inverses: &[f64]) {
 mod tests {
     use super::*;
 
-    #[test]
-    fn the_estimate_solves_its_equations() {
-        let numbers = 30;
+    /// Planes of numbers that are given by number and patch.
+    fn planes(numbers: usize, patches: usize, number: impl Fn(usize, usize) -> f64) -> Planes<f64> {
+        let mut planes = Planes::new(numbers, patches + APART * LANES);
+        for i in 0..numbers {
+            for (patch, x) in planes.row_mut(i)[..patches].iter_mut().enumerate() {
+                *x = number(patch, i);
+            }
+        }
+        planes
+    }
+
+    fn rows(numbers: usize, patches: usize, number: impl Fn(usize, usize) -> f64) -> Vec<f64> {
         let width = width(numbers);
-        let count = 90;
-        let number =
-            |i: usize, j: usize| if j < numbers { ((i * 37 + j * j * 11) % 97) as f64 / 9.0 } else { 0.0 };
-        let rows: Vec<f64> = (0..count * width).map(|at| number(at / width, at % width)).collect();
+        (0..patches * width)
+            .map(|at| if at % width < numbers { number(at / width, at % width) } else { 0.0 })
+            .collect()
+    }
+
+    #[test]
+    fn estimates_solve_their_equations() {
+        let numbers = 24;
+        let pilot = |patch: usize, i: usize| ((patch * 37 + i * i * 11) % 97) as f64 / 9.0;
+        let rest = |patch: usize, i: usize| ((patch * 5 + i) % 7) as f64 - 3.0;
         let alike: Vec<usize> = (5..85).collect();
-        let noisy: Vec<f64> = (0..numbers).map(|i| (i % 5) as f64 - 2.0).collect();
-        let mut moved = noisy.clone();
-        System::new(numbers).estimate(&rows, &alike, 40, &mut moved);
-        let mean = |j: usize| alike.iter().map(|&i| number(i, j)).sum::<f64>() / 80.0;
+        let mut model = Model::new(numbers);
+        model.learn(&rows(numbers, 90, pilot), &alike);
+        let mut times = [1.0; LANES];
+        times[2] = 0.0;
+        let moves =
+            model.estimate((&planes(numbers, 90, pilot), 40), (&planes(numbers, 60, rest), 10), &times);
+        let mean = |i: usize| alike.iter().map(|&patch| pilot(patch, i)).sum::<f64>() / 80.0;
         let covariance = |a: usize, b: usize| {
-            let products = alike.iter().map(|&i| (number(i, a) - mean(a)) * (number(i, b) - mean(b)));
+            let products =
+                alike.iter().map(|&patch| (pilot(patch, a) - mean(a)) * (pilot(patch, b) - mean(b)));
             0.75 * products.sum::<f64>() / 80.0
         };
         // (C + I)(x − (f − p)) = p + x − μ
-        for a in 0..numbers {
-            let left: f64 = (0..numbers)
-                .map(|b| (covariance(a, b) + f64::from(u8::from(a == b))) * (noisy[b] - moved[b]))
-                .sum();
-            assert!((left - (number(40, a) + noisy[a] - mean(a))).abs() < 1e-8);
+        for lane in [0, 1, 2 * NEAR / APART] {
+            let (p, x) = (40 + lane * APART, 10 + lane * APART);
+            for a in 0..numbers {
+                let left: f64 = (0..numbers)
+                    .map(|b| {
+                        let noise = rest(x, b) - moves[b][lane];
+                        (covariance(a, b) + f64::from(u8::from(a == b))) * noise
+                    })
+                    .sum();
+                assert!((left - (pilot(p, a) + rest(x, a) - mean(a))).abs() < 1e-8);
+            }
         }
+        assert!(moves.iter().all(|moves| moves[2] == 0.0));
     }
 
     #[test]
     fn without_digits_left_for_the_noise_estimates_stay_near() {
-        let numbers = 30;
-        let width = width(numbers);
-        let rows: Vec<f64> = (0..80 * width)
-            .map(|at| if at % width < numbers { (at / width) as f64 * 1e12 } else { 0.0 })
-            .collect();
+        let numbers = 24;
+        let pilot = |patch: usize, _: usize| patch as f64 * 1e12;
         let alike: Vec<usize> = (0..80).collect();
-        let mut moved = vec![0.25; numbers];
-        System::new(numbers).estimate(&rows, &alike, 40, &mut moved);
-        assert!(moved.iter().all(|x| x.abs() < 2.0));
+        let mut model = Model::new(numbers);
+        model.learn(&rows(numbers, 80, pilot), &alike);
+        let rest = planes(numbers, 80, |_, _| 0.25);
+        let moves = model.estimate((&planes(numbers, 80, pilot), 40), (&rest, 40), &[1.0; LANES]);
+        assert!(moves.iter().all(|moves| moves[0].abs() < 2.0));
     }
 }

@@ -3,21 +3,17 @@
 //! Windows of the vectors of all joints about the pilot, half of the way to the samples, become cosines; in each band of them the
 //! singular values are shrunk. Windows overlap by half; those of a pass are computed together, and added up in their order.
 //!
-//! - `window`: cosines, bands and what is taken away in them;
-//! - `symmetric`: eigenvectors;
-//! - `products`: products of matrices.
+//! - `window`: cosines, bands and what is taken away in them.
 
-mod products;
-mod symmetric;
 mod window;
 
 use super::about::{About, Noisy};
-use crate::clip::Planes;
+use super::products::padded;
+use super::sums::{Joint, Sums};
 use crate::error::check_length;
 use crate::parallel::{self, Interrupt};
 use crate::{ClipMut, Error, Real};
-use products::padded;
-pub(super) use symmetric::eigen;
+use std::ops::Range;
 use window::Cosines;
 
 /// Frames of a window, at most.
@@ -45,7 +41,7 @@ const SHARE: f64 = 0.35;
 const PASS: usize = 16;
 
 /// Estimated nanoseconds per frame, joint and joint: products and eigenvectors.
-const NANOSECONDS: usize = 60;
+const NANOSECONDS: usize = 20;
 
 /// Takes the mean of the pilot and of an estimate that has low rank in bands of frequencies.
 ///
@@ -63,21 +59,10 @@ pub fn smooth_rank<T: Real>(
     if out.is_empty() {
         return Ok(());
     }
-    let enough = |&noise: &f64| if noise < LEAST_NOISE { 0.0 } else { noise };
-    let noise: Vec<f64> = noisy.noise.iter().map(enough).collect();
-    let joints = noise.iter().filter(|&&noise| noise > 0.0).count();
-    if frames < FEWEST || joints < LEAST_JOINTS {
-        return noisy.moved(&[], &[], out);
+    let joints = noisy.joints(LEAST_NOISE);
+    if frames < FEWEST || joints.len() < LEAST_JOINTS {
+        return noisy.unmoved(out);
     }
-    let noisy = Noisy { noise: &noise, ..*noisy };
-    let about = noisy.vectors(interrupt)?;
-    let moves = moves(&about, frames, interrupt)?;
-    noisy.moved(&about.joints, &moves, out)
-}
-
-/// How far the result lies from the pilot.
-fn moves(about: &About, frames: usize, interrupt: &Interrupt) -> Result<Vec<Planes<f64>>, Error> {
-    let joints = about.joints.len();
     let length = WINDOW.min(frames);
     let last = frames - length;
     let mut starts: Vec<usize> = (0..=last).step_by(length / 2).collect();
@@ -85,70 +70,65 @@ fn moves(about: &About, frames: usize, interrupt: &Interrupt) -> Result<Vec<Plan
         starts.push(last);
     }
     let cosines = Cosines::new(length);
-    let mut totals: Vec<Planes<f64>> = (0..joints).map(|_| Planes::new(3, frames)).collect();
-    let mut counts = vec![0.0; frames];
-    let weight = |t: usize| (t + 1).min(length - t) as f64;
-    for &start in &starts {
-        for (t, count) in counts[start..start + length].iter_mut().enumerate() {
-            *count += weight(t);
-        }
-    }
-    for pass in starts.chunks(PASS) {
-        let work = pass.len() * length * joints * joints * NANOSECONDS;
-        let windows = parallel::map(pass.to_vec(), work, |_, start| {
+    let weights: Vec<f64> = (0..length).map(|t| (t + 1).min(length - t) as f64).collect();
+    let mut about = Vec::new();
+    let mut sums = Sums::new(joints.len());
+    for (pass, own) in starts.chunks(PASS).enumerate() {
+        let first = own[0];
+        let end = own[own.len() - 1] + length;
+        noisy.vectors(&joints, first..end, &mut about, interrupt)?;
+        let work = own.len() * length * joints.len() * joints.len().min(length) * NANOSECONDS;
+        let windows = parallel::map(own.to_vec(), work, |_, start| {
             interrupt.check()?;
-            window(about, &cosines, start, length, interrupt)
+            window(&about, &cosines, start - first..start - first + length, interrupt)
         })?;
-        parallel::for_each(
-            totals.iter_mut().zip(&about.beside).collect(),
-            pass.len() * length * joints * 20,
-            |joint, (total, beside): (&mut Planes<f64>, &Planes<f64>)| {
-                for c in 0..3 {
-                    let (total, beside) = (total.row_mut(c), beside.row(c));
-                    for (&start, poses) in pass.iter().zip(&windows) {
-                        let beside = &beside[start..start + length];
-                        let mean = beside.iter().sum::<f64>() / length as f64;
-                        let taken = poses[joint * 3 + c..].iter().step_by(padded(3 * joints));
-                        for ((t, total), (x, taken)) in
-                            total[start..start + length].iter_mut().enumerate().zip(beside.iter().zip(taken))
-                        {
-                            *total += weight(t) * (0.5 * (x - mean) - taken);
-                        }
-                    }
-                }
-                Ok(())
-            },
-        )?;
-    }
-    for total in &mut totals {
-        for c in 0..3 {
-            for (x, count) in total.row_mut(c).iter_mut().zip(&counts) {
-                *x *= SHARE / count;
+        let work = own.len() * length * joints.len() * 20;
+        sums.add(end, work, |joint, from, sums| {
+            for (&start, taken) in own.iter().zip(&windows) {
+                let beside = about[joint].beside().map(|plane| &plane[start - first..][..length]);
+                add(beside, taken, joint, &weights, start - from, sums);
             }
+        })?;
+        // No later window holds the frames before the next one begins.
+        let settled = starts.get((pass + 1) * PASS).copied().unwrap_or(frames);
+        sums.settle(noisy, &joints, settled, SHARE, out)?;
+    }
+    noisy.sign(out)
+}
+
+/// Adds to the sums of a joint, from the frame `at` on, what a window says: half of the way to the samples, but for its mean, less
+/// what is taken away from the poses halfway.
+fn add(beside: [&[f64]; 3], taken: &[f64], joint: usize, weights: &[f64], at: usize, sums: &mut Joint) {
+    let width = taken.len() / weights.len();
+    let [x, y, z, total] = sums.each_mut().map(|plane| &mut plane[at..at + weights.len()]);
+    for (c, (sums, beside)) in [x, y, z].into_iter().zip(beside).enumerate() {
+        let mean = beside.iter().sum::<f64>() / weights.len() as f64;
+        let taken = taken[joint * 3 + c..].iter().step_by(width);
+        for ((sum, weight), (x, taken)) in sums.iter_mut().zip(weights).zip(beside.iter().zip(taken)) {
+            *sum += weight * (0.5 * (x - mean) - taken);
         }
     }
-    Ok(totals)
+    for (total, weight) in total.iter_mut().zip(weights) {
+        *total += weight;
+    }
 }
 
 /// What is taken away from the poses of a window, halfway from the pilot to the samples; a row for each frame.
 fn window(
-    about: &About,
+    about: &[About],
     cosines: &Cosines,
-    start: usize,
-    length: usize,
+    frames: Range<usize>,
     interrupt: &Interrupt,
 ) -> Result<Vec<f64>, Error> {
-    let columns = 3 * about.joints.len();
+    let columns = 3 * about.len();
     let width = padded(columns);
-    let mut poses = vec![0.0; length * width];
-    for (joint, (mean, beside)) in about.mean.iter().zip(&about.beside).enumerate() {
-        for c in 0..3 {
-            let mean = &mean.row(c)[start..start + length];
-            let beside = &beside.row(c)[start..start + length];
-            let column = poses[joint * 3 + c..].iter_mut().step_by(width);
-            for (pose, (mean, beside)) in column.zip(mean.iter().zip(beside)) {
-                *pose = mean + 0.5 * beside;
-            }
+    let mut poses = vec![0.0; frames.len() * width];
+    let planes = about.iter().flat_map(|about| about.mean().into_iter().zip(about.beside()));
+    for (plane, (mean, beside)) in planes.enumerate() {
+        let (mean, beside) = (&mean[frames.clone()], &beside[frames.clone()]);
+        let column = poses[plane..].iter_mut().step_by(width);
+        for (pose, (mean, beside)) in column.zip(mean.iter().zip(beside)) {
+            *pose = mean + 0.5 * beside;
         }
     }
     cosines.removed(&mut poses, columns, interrupt)?;

@@ -1,24 +1,32 @@
 //! The estimate of low rank of one window.
 
-use super::products::{padded, product, transposed};
-use super::symmetric::eigen;
+use super::super::products::{add_products, padded, product, transposed};
+use super::super::spectrum::{BATCH, Transform};
+use super::super::symmetric::leading;
 use super::{LONGEST_PERIOD, VARIANCE};
 use crate::parallel::Interrupt;
 use crate::{Error, Real};
 use std::f64::consts::PI;
 
-/// Cosines over windows of one length.
+/// Orthonormal cosine transforms of windows of one length.
 #[derive(Debug)]
-pub(super) struct Cosines {
-    length: usize,
-    /// Orthonormal cosines, a row for each.
-    forth: Vec<f64>,
-    /// A row for each frame, of `length` numbers.
-    back: Vec<f64>,
+pub(super) enum Cosines {
+    /// Of a power of two.
+    Fast(Transform),
+    /// Of any other length: by products with all cosines. Only clips shorter than a window have such a length.
+    Any {
+        /// A row for each cosine.
+        forth: Vec<f64>,
+        /// A row for each frame.
+        back: Vec<f64>,
+    },
 }
 
 impl Cosines {
     pub(super) fn new(length: usize) -> Self {
+        if length.is_power_of_two() {
+            return Self::Fast(Transform::new(length));
+        }
         let n = length as f64;
         let circle: Vec<f64> = (0..4 * length).map(|i| Real::sin_cos(PI * i as f64 / (2.0 * n)).1).collect();
         let cosine = |k: usize, t: usize| {
@@ -27,11 +35,11 @@ impl Cosines {
         };
         let forth: Vec<f64> = (0..length * length).map(|at| cosine(at / length, at % length)).collect();
         let back = transposed(&forth, length, length, length);
-        Self { length, forth, back }
+        Self::Any { forth, back }
     }
 
-    /// What the estimate of low rank takes away from poses, rows of `width` numbers of which the first `columns` count; it
-    /// takes their place. Their mean stays.
+    /// What the estimate of low rank takes away from poses, rows of `padded(columns)` numbers; it takes their place. Their mean
+    /// stays.
     pub(super) fn removed(
         &self,
         poses: &mut [f64],
@@ -39,15 +47,37 @@ impl Cosines {
         interrupt: &Interrupt,
     ) -> Result<(), Error> {
         let width = padded(columns);
-        let mut spectrum = vec![0.0; self.length * width];
-        product(&self.forth, self.length, poses, width, &mut spectrum);
-        spectrum[..width].fill(0.0);
-        for (first, end) in bands(self.length) {
-            shrink(&mut spectrum[first * width..end * width], columns, interrupt)?;
+        match self {
+            Self::Fast(transform) => {
+                let mut transform = transform.clone();
+                for first in (0..width).step_by(BATCH) {
+                    transform.forth(poses, width, first);
+                }
+                shrink_bands(poses, columns, interrupt)?;
+                for first in (0..width).step_by(BATCH) {
+                    transform.back(poses, width, first);
+                }
+            }
+            Self::Any { forth, back } => {
+                let length = poses.len() / width;
+                let mut spectrum = vec![0.0; poses.len()];
+                product(forth, length, poses, width, &mut spectrum);
+                shrink_bands(&mut spectrum, columns, interrupt)?;
+                product(back, length, &spectrum, width, poses);
+            }
         }
-        product(&self.back, self.length, &spectrum, width, poses);
         Ok(())
     }
+}
+
+/// In the place of a spectrum, what is taken away from it.
+fn shrink_bands(spectrum: &mut [f64], columns: usize, interrupt: &Interrupt) -> Result<(), Error> {
+    let width = padded(columns);
+    spectrum[..width].fill(0.0);
+    for (first, end) in bands(spectrum.len() / width) {
+        shrink(&mut spectrum[first * width..end * width], columns, interrupt)?;
+    }
+    Ok(())
 }
 
 /// First cosines of the bands, and the first ones after them. The mean of a window is in none.
@@ -68,43 +98,56 @@ fn shrink(band: &mut [f64], columns: usize, interrupt: &Interrupt) -> Result<(),
     let (short, long) = (rows.min(columns), rows.max(columns));
     let by_rows = rows <= columns;
     // Of the shorter side, the products of its rows with each other.
-    let across = transposed(band, width, columns, padded(rows));
     let side = padded(short);
-    let mut products = vec![0.0; short * side];
+    let mut products = vec![0.0; side * side];
     if by_rows {
-        product(band, width, &across, side, &mut products);
+        add_products(&transposed(band, width, columns, side), side, &mut products, side);
     } else {
-        product(&across, padded(rows), band, side, &mut products);
+        add_products(band, width, &mut products, width);
     }
-    let mut square: Vec<f64> = products.chunks_exact(side).flat_map(|row| &row[..short]).copied().collect();
-    let (values, vectors) = eigen(&mut square, short, interrupt)?;
+    let mut square: Vec<f64> = (0..short * short)
+        .map(|at| {
+            let (i, j) = (at / short, at % short);
+            products[i.min(j) * side + i.max(j)]
+        })
+        .collect();
     let ratio = short as f64 / long as f64;
+    let unit = VARIANCE * long as f64;
     let seen = (1.0 + ratio.sqrt()) * (1.0 + ratio.sqrt());
-    let taken = |value: f64| {
-        let y2 = value / (VARIANCE * long as f64);
-        if y2 > seen {
-            let about = y2 - ratio - 1.0;
-            1.0 - (about * about - 4.0 * ratio).sqrt() / y2
-        } else {
-            1.0
-        }
+    let (values, vectors) = leading(&mut square, short, seen * unit, interrupt)?;
+    let count = values.len();
+    if count == 0 {
+        return Ok(());
+    }
+    // What is kept along the vectors is not taken away; all else is.
+    let kept = |value: f64| {
+        let y2 = value / unit;
+        let about = y2 - ratio - 1.0;
+        (about * about - 4.0 * ratio).max(0.0).sqrt() / y2
     };
-    // The sum of the taken shares along the vectors: `Σ_i taken_i v_i v_iᵀ`.
-    let mut scaled = vec![0.0; short * side];
-    for ((row, vector), &value) in scaled.chunks_exact_mut(side).zip(vectors.chunks_exact(short)).zip(&values)
+    let stride = if by_rows { short } else { width };
+    let mut scaled = vec![0.0; count * stride];
+    for ((row, vector), &value) in
+        scaled.chunks_exact_mut(stride).zip(vectors.chunks_exact(short)).zip(&values)
     {
-        let share = taken(value);
+        let share = kept(value);
         for (x, v) in row.iter_mut().zip(vector) {
             *x = share * v;
         }
     }
-    let turned = transposed(&vectors, short, short, short);
-    product(&turned, short, &scaled, side, &mut products);
-    let before = band.to_vec();
+    let mut stays = vec![0.0; band.len()];
     if by_rows {
-        product(&products, side, &before, width, band);
+        let mut along = vec![0.0; count * width];
+        product(&vectors, short, band, width, &mut along);
+        product(&transposed(&scaled, short, short, count), count, &along, width, &mut stays);
     } else {
-        product(&before, width, &products, side, band);
+        let across = padded(count);
+        let mut along = vec![0.0; rows * across];
+        product(band, width, &transposed(&vectors, short, short, across), across, &mut along);
+        product(&along, across, &scaled, width, &mut stays);
+    }
+    for (x, stays) in band.iter_mut().zip(&stays) {
+        *x -= stays;
     }
     Ok(())
 }

@@ -9,6 +9,10 @@ pub(super) const LANE: usize = 16;
 /// Rows whose sums stay in registers together.
 const PAIR: usize = 2;
 
+/// Rows and columns of a block of a symmetric matrix whose sums stay in registers.
+const TOP: usize = 4;
+const SIDE: usize = 8;
+
 /// Length of a row that holds so many numbers.
 pub(super) fn padded(numbers: usize) -> usize {
     numbers.next_multiple_of(LANE)
@@ -33,6 +37,33 @@ pub(super) fn transposed(rows: &[f64], stride: usize, columns: usize, width: usi
         }
     }
     out
+}
+
+multiversion! {
+    /// Adds the products `Σ_t x_t x_tᵀ` of rows to a matrix, whose rows are `stride` apart, from the blocks on its diagonal on to the
+    /// right.
+    pub(super) fn add_products<T: Real>(rows: &[T], width: usize, matrix: &mut [T], stride: usize) {
+        for top in (0..width).step_by(TOP) {
+            for left in (top / SIDE * SIDE..width).step_by(SIDE) {
+                let mut sums = [[T::ZERO; SIDE]; TOP];
+                for row in rows.chunks_exact(width) {
+                    let down: [T; TOP] = std::array::from_fn(|i| row[top + i]);
+                    let along = &row[left..left + SIDE];
+                    for j in 0..SIDE {
+                        for i in 0..TOP {
+                            sums[i][j] += down[i] * along[j];
+                        }
+                    }
+                }
+                for i in 0..TOP {
+                    let to = &mut matrix[(top + i) * stride + left..][..SIDE];
+                    for j in 0..SIDE {
+                        to[j] += sums[i][j];
+                    }
+                }
+            }
+        }
+    }
 }
 
 multiversion! {

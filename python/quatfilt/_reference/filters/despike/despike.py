@@ -6,7 +6,10 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from quatfilt._reference._arrays import Indices, Mask, Reals
-from quatfilt._reference.rotations.quaternion import between, exp, log_short, multiply, norm, normalize
+from quatfilt._reference.filters.despike.deviation import deviation, pace
+from quatfilt._reference.filters.despike.displaced import displaced
+from quatfilt._reference.filters.despike.place import distance
+from quatfilt._reference.rotations.quaternion import normalize
 
 DEVIATION_OF_NOISE = 1.5
 """Median deviation of samples of white noise with the deviation 1 per coordinate; 1.50 was measured for radius 3."""
@@ -24,16 +27,23 @@ hid; the third releases what only seemed to be one beside them."""
 
 
 def find_spikes(
-    x: Reals, confidence: Reals | None, noise: Reals, smallest: Reals, radius: int, threshold: float
+    x: Reals,
+    confidence: Reals | None,
+    noise: Reals,
+    smallest: Reals,
+    radius: int,
+    threshold: float,
+    longest: int,
 ) -> Mask:
-    """Find the runs of less than `radius` samples that neither side of them nor the way across explains.
+    """Find the runs of less than `radius` samples that neither side of them nor the way across explains, and longer displaced ones.
 
-    A run is a spike if its :func:`deviation` is larger than
+    Runs of `radius` to `longest` samples are spikes if they are :func:`.displaced`. A shorter run is a spike if its :func:`.deviation` is
+    larger than
 
     - `threshold` times the usual deviation: the median over the runs of the same length around it, and at least what
       white noise of the joint's level has, `1.5 · noise`;
     - `smallest`;
-    - what the joint moves in 2 frames: by its :func:`pace`.
+    - what the joint moves in 2 frames: by its :func:`.pace`.
 
     Neighbours of a run are, on either side, the nearest samples that are trusted: up to `radius` of them, within
     `3 · radius` frames, and so far reach the surroundings. Samples of confidence 0 are not trusted, nor are those that the look before this one took for
@@ -51,9 +61,11 @@ def find_spikes(
     smallest : array (joints,)
         Deviations up to here are no spikes: radians of rotation, or the unit of the positions.
     radius : int, frames
-        Spikes are shorter, and at most so many neighbours on either side are asked.
+        The deviation judges shorter runs, by at most so many neighbours on either side.
     threshold : float
         How many times the usual deviation.
+    longest : int, frames
+        The longest displaced run; below `radius` none is looked for.
 
     Returns
     -------
@@ -76,12 +88,20 @@ def find_spikes(
                 float(smallest[joint]),
                 radius,
                 threshold,
+                longest,
             )
     return found
 
 
 def look(
-    path: Reals, trust: Reals, before: Mask, usual: float, smallest: float, radius: int, threshold: float
+    path: Reals,
+    trust: Reals,
+    before: Mask,
+    usual: float,
+    smallest: float,
+    radius: int,
+    threshold: float,
+    longest: int,
 ) -> Mask:
     """Spikes of one joint, `(frames,)`, given those that were found before."""
     frames = len(path)
@@ -118,13 +138,13 @@ def look(
             if away > max(least(doubt), MOTION * pace(path, *sides(start, end))):
                 around = surroundings(start, end)
                 found[start:end] |= away > threshold * doubt * (np.median(around) if around else 0.0)
-    return found
+    return found | displaced(path, trust, trusted & ~found, range(radius, longest + 1), least)
 
 
 def candidates(path: Reals, trust: Reals, trusted: Mask, length: int, reach: int, least: float) -> list[int]:
     """Find the runs of a length that have neighbours and are farther than `least` from the nearest ones: their starts.
 
-    The nearest neighbours are two of the explanations of :func:`deviation`: no other run can be a spike.
+    The nearest neighbours are two of the explanations of :func:`.deviation`: no other run can be a spike.
     """
     frames = np.arange(len(path))
     last = np.maximum.accumulate(np.where(trusted, frames, -1))
@@ -137,54 +157,3 @@ def candidates(path: Reals, trust: Reals, trusted: Mask, length: int, reach: int
     starts, before, after = starts[judged], before[judged], after[judged]
     into, out = distance(path[before], path[starts]), distance(path[starts + length - 1], path[after])
     return [int(start) for start in starts[(into > least) & (out > least)]]
-
-
-def deviation(path: Reals, start: int, end: int, earlier: Indices, later: Indices) -> float:
-    """How far a run is from where its neighbours would have it, at the sample and by the explanation that fit best.
-
-    The explanations are: the sample is where its nearest neighbour on either side is (the joint rested, or jumped); on
-    the straight line, in time, of the neighbours of either side (the motion goes on, and turns or jumps at the other end
-    of the run); on the way from one side to the other (the motion goes through). NaN without a neighbour on either side.
-    """
-    if len(earlier) == 0 or len(later) == 0:
-        return float("nan")
-    a, b = path[earlier[0]], path[later[0]]
-    t = np.arange(start, end)
-    part = (t - earlier[0]) / (later[0] - earlier[0])
-    across = moved(a, part[:, None] * step(a, b))
-    explanations = [a, b, line(path, earlier, t), line(path, later, t), across]
-    return float(min(np.min(distance(path[t], expected)) for expected in explanations))
-
-
-def line(path: Reals, neighbours: Indices, t: Indices) -> Reals:
-    """Where the straight line through neighbours is at frames `t`: that of least squares, as seen from the nearest."""
-    nearest = path[neighbours[0]]
-    vectors = step(nearest, path[neighbours])
-    spread = neighbours - neighbours.mean()
-    slope = spread @ vectors / max(spread @ spread, 1.0)
-    return moved(nearest, vectors.mean(axis=0) + (t - neighbours.mean())[:, None] * slope)
-
-
-def pace(path: Reals, earlier: Indices, later: Indices) -> float:
-    """Median of the movements per frame from one neighbour to the next on its side; 0 without any.
-
-    The median, because another spike among the neighbours moves up to half of them.
-    """
-    steps = [distance(path[side[1:]], path[side[:-1]]) / np.abs(np.diff(side)) for side in (earlier, later)]
-    together = np.concatenate(steps)
-    return float(np.median(together)) if len(together) else 0.0
-
-
-def step(a: Reals, b: Reals) -> Reals:
-    """Rotation vector, in radians, from the rotation `a` to `b`, the shorter way; or the way between two positions."""
-    return b - a if a.shape[-1] == 3 else 2 * log_short(between(a, b))
-
-
-def moved(a: Reals, vector: Reals) -> Reals:
-    """Rotation or position that lies one `step` from `a`."""
-    return a + vector if a.shape[-1] == 3 else multiply(a, exp(vector / 2))
-
-
-def distance(a: Reals, b: Reals) -> Reals:
-    """Length of the `step` from `a` to `b`."""
-    return norm(step(a, b))
