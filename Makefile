@@ -9,6 +9,7 @@ PYTHON ?= python3
 VENV ?= .venv
 PYTEST ?=
 BENCH ?=
+TRAIN ?=
 SEEDS ?= 20
 
 ifeq ($(OS),Windows_NT)
@@ -122,6 +123,10 @@ bench-test: prerequisites
 bench-instructions: build
 	cargo build --release --locked -p quatfilt-benches --bin instructions
 	$(BIN)/python benches/python/instructions.py target/release/instructions $(BENCH)
+
+.PHONY: train-gains  ## Train the network of the last step of automatic smoothing on QUATFILT_DATA (arguments: TRAIN="--crops 10")
+train-gains: build
+	$(BIN)/python training/train_gains.py $(TRAIN)
 
 .PHONY: docs  ## Write the reference of the Rust crates to target/doc and of the Python package to out/docs
 docs: build $(VENV)/.group-docs

@@ -1,10 +1,10 @@
-//! Automatic smoothing: each joint by itself, all together, groups of similar patches, and low rank.
+//! Automatic smoothing: each joint by itself, all together, groups of similar patches, low rank, and learned gains.
 
 use quatfilt_benches::clips::{self, NOISE};
 use quatfilt_benches::timer::Timer;
 use quatfilt_core::filters::development::Input;
 use quatfilt_core::filters::smooth::{
-    Noisy, REFERENCE_SIGMA, Smoother, smooth_body, smooth_patches, smooth_rank,
+    Network, Noisy, REFERENCE_SIGMA, Smoother, smooth_body, smooth_gains, smooth_patches, smooth_rank,
 };
 use quatfilt_core::parallel::Interrupt;
 use quatfilt_core::{ClipMut, ClipView, Error, Real};
@@ -41,5 +41,10 @@ fn smooth<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error>
     })?;
     timer.threads::<T, _, _>("filters/smooth_rank", size, || {
         smooth_rank(&noisy, ClipMut::new(&mut out, frames, joints)?, &interrupt)
+    })?;
+    // As many weights as the network of the package has.
+    let network = Network::new(&vec![0.01; 102 * 64], &vec![0.01; 65 * 64], &vec![0.01; 65 * 19])?;
+    timer.threads::<T, _, _>("filters/smooth_gains", size, || {
+        smooth_gains(&noisy, clip, 1.0, &network, ClipMut::new(&mut out, frames, joints)?, &interrupt)
     })
 }

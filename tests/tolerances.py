@@ -14,6 +14,9 @@ KARCHER_MEAN = 1e-13
 FLOAT64 = 1e-12
 """Filters in float64: roundings in a patch distance are amplified by up to 80, the largest exponent that counts."""
 
+GAINS = 3e-6
+"""Corrections with gains are computed in float32: roundings of columns of some ten units of the noise, and of sums of a network."""
+
 FLOAT32 = 1e-5
 """Filters in float32: an ulp near 1 is 6e-8; amplified as in `FLOAT64`."""
 
@@ -93,6 +96,11 @@ def distance(dtype):
 def filtered(dtype):
     """Return the tolerance for filters by the dtype of their rotations."""
     return FLOAT32 if np.dtype(dtype) == np.float32 else FLOAT64
+
+
+def gains(dtype):
+    """Return the tolerance for corrections with gains, whose columns are float32, by the dtype of their rotations."""
+    return FLOAT32 if np.dtype(dtype) == np.float32 else GAINS
 
 
 def principal_axes(dtype, frames):

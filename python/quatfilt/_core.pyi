@@ -83,6 +83,7 @@ __all__ = [
     "slerp",
     "smooth",
     "smooth_body",
+    "smooth_gains",
     "smooth_patches",
     "smooth_rank",
     "solve_pose",
@@ -261,6 +262,20 @@ def smooth(
     /,
 ) -> tuple[Array, Array | None]: ...
 def smooth_body(q: Array, pilot: Array, confidence: Array | None, noise: NDArray[np.float64], /) -> Array: ...
+
+# filters/smooth/gains
+def smooth_gains(
+    q: Array,
+    patches: Array,
+    pilot: Array,
+    confidence: Array | None,
+    noise: NDArray[np.float64],
+    share: float,
+    first: NDArray[np.float32],
+    second: NDArray[np.float32],
+    last: NDArray[np.float32],
+    /,
+) -> Array: ...
 
 # filters/smooth/low_pass
 def low_pass(

@@ -24,6 +24,7 @@ from quatfilt._reference.filters.one_euro import one_euro
 from quatfilt._reference.filters.orientation_filter import orientation_filter
 from quatfilt._reference.filters.savgol import savgol, savgol_derivative
 from quatfilt._reference.filters.smooth.body import smooth_body
+from quatfilt._reference.filters.smooth.gains import smooth_gains
 from quatfilt._reference.filters.smooth.low_pass import low_pass
 from quatfilt._reference.filters.smooth.patches import smooth_patches
 from quatfilt._reference.filters.smooth.rank import smooth_rank
@@ -133,6 +134,7 @@ __all__ = [
     "slerp",
     "smooth",
     "smooth_body",
+    "smooth_gains",
     "smooth_patches",
     "smooth_rank",
     "solve_pose",

@@ -9,6 +9,7 @@ from quatfilt import _validation
 from quatfilt._backend import ops
 from quatfilt._typing import Array, Mask, PerJoint
 from quatfilt.filters import _development, _paths, _spans
+from quatfilt.filters._gains import weights
 from quatfilt.filters._measured import whitened
 from quatfilt.noise._measure import measure
 
@@ -39,6 +40,7 @@ def smooth(
     *,
     strength: PerJoint = 1.0,
     joints: Joints = "apart",
+    learned: bool = False,
     noise: Noise = "white",
     confidence: ArrayLike | None = None,
     gaps: _spans.Gaps = "fill",
@@ -66,6 +68,9 @@ def smooth(
         With ``"together"`` three more steps follow: all joints are smoothed along the principal axes of the whole body, then
         groups of similar patches of motion, wherever they are within 256 frames, and then all joints as few movements at a
         time. What repeats itself, in time or between joints, is kept, and noise is not. Takes about six times as long.
+    learned : bool, default False
+        With ``joints="together"``, True adds a last step, which corrects the result in several scales of time with gains from a
+        small network that was trained on recordings of other people. With ``"apart"`` there is no such step.
     noise : {"white", "measured"}, default "white"
         With ``"measured"`` the noise need be neither white nor steady: its colour, its axes, its level along time and exact repeats
         are measured first, see `noise_model`. Samples that repeat the one before have confidence 0; stretches with more noise have
@@ -127,6 +132,7 @@ def smooth(
         None,
         strength=strength,
         joints=joints,
+        learned=learned,
         noise=noise,
         confidence=confidence,
         gaps=gaps,
@@ -142,12 +148,14 @@ def with_translation(
     *,
     strength: PerJoint,
     joints: Joints,
+    learned: bool,
     noise: Noise,
     fps: float,
     **missing: Any,
 ) -> tuple[Array, Array | None]:
     """Smooth as `smooth` does, and a translation ``(frames, 3)`` by its own noise and with the strength of joint 0."""
     together = _validation.choice(joints, "joints", _JOINTS) == "together"
+    learned = _validation.switch(learned, "learned")
     measured = _validation.choice(noise, "noise", _NOISES) == "measured"
     clip = _spans.prepare(q, together=together, fps=fps, **missing)
     scale = _validation.per_joint(
@@ -179,10 +187,18 @@ def with_translation(
             rotations = _spans.refilled(rotations, trust == 0)
             along = None if along is None else _paths.straightened(along, trust[:, 0] > 0)
         if model is None:
-            return _smoothed(rotations, along, trust, here, position_noise, together=together)
+            return _smoothed(
+                rotations, along, trust, here, position_noise, together=together, learned=learned
+            )
         white = whitened(rotations, trust, here, span, model)
         result, moved = _smoothed(
-            white.rotations, along, white.confidence, white.noise, position_noise, together=together
+            white.rotations,
+            along,
+            white.confidence,
+            white.noise,
+            position_noise,
+            together=together,
+            learned=learned,
         )
         result = white.back(result)
         if frozen is not None:
@@ -201,13 +217,16 @@ def _smoothed(
     position_noise: float,
     *,
     together: bool,
+    learned: bool,
 ) -> tuple[Array, Array | None]:
     """Smooth rotations of white noise, and a translation."""
     result, moved = ops().smooth(rotations, along, trust, levels, position_noise)
     if together:
         result = ops().smooth_body(rotations, result, trust, levels)
-        result = ops().smooth_patches(rotations, result, trust, levels, _PATCH_ROUNDS)
-        result = ops().smooth_rank(rotations, result, trust, levels)
+        patches = ops().smooth_patches(rotations, result, trust, levels, _PATCH_ROUNDS)
+        result = ops().smooth_rank(rotations, patches, trust, levels)
+        if learned:
+            result = ops().smooth_gains(rotations, patches, result, trust, levels, 1.0, *weights())
     return cast("Array", result), cast("Array | None", moved)
 
 

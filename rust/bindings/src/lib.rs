@@ -44,6 +44,8 @@ mod _core {
     #[pymodule_export]
     use super::filters::smooth::body::smooth_body;
     #[pymodule_export]
+    use super::filters::smooth::gains::smooth_gains;
+    #[pymodule_export]
     use super::filters::smooth::low_pass::low_pass;
     #[pymodule_export]
     use super::filters::smooth::patches::smooth_patches;

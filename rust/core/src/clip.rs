@@ -154,6 +154,18 @@ impl<T: Real> Planes<T> {
         &mut self.buffer[at..at + self.length]
     }
 
+    /// Numbers from the first of a plane to the first of the next.
+    #[must_use]
+    pub fn stride(&self) -> usize {
+        self.stride
+    }
+
+    /// All planes from `row` on, with what lies between them.
+    #[must_use]
+    pub fn from_row(&self, row: usize) -> &[T] {
+        &self.buffer[self.start + row * self.stride..]
+    }
+
     /// `N` planes in sequence from `row`, to be written together.
     ///
     /// Planes beyond the last come back empty.

@@ -84,6 +84,41 @@ macro_rules! real_basics {
     };
 }
 
+/// Natural logarithm of a positive number that is not subnormal, to 2 units in the last place.
+///
+/// Cephes: of the mantissa between `√½` and `√2`, a polynomial.
+#[inline(always)]
+#[must_use]
+#[allow(clippy::cast_possible_wrap, clippy::cast_precision_loss, reason = "an exponent is a small integer")]
+pub fn ln(x: f32) -> f32 {
+    const LN2_HIGH: f32 = 0.693_359_375;
+    const LN2_LOW: f32 = -2.121_944_4e-4;
+    const MANTISSA: u32 = 0x007f_ffff;
+    let bits = x.to_bits();
+    let half = f32::from_bits((bits & MANTISSA) | 0x3f00_0000);
+    let exponent = (bits >> 23) as i32 - 126;
+    let low = half < std::f32::consts::FRAC_1_SQRT_2;
+    let r = if low { half + half } else { half } - 1.0;
+    let n = (exponent - i32::from(low)) as f32;
+    let z = r * r;
+    let tail = polynomial(
+        r,
+        [
+            7.037_683_6e-2,
+            -1.151_461_03e-1,
+            1.167_699_87e-1,
+            -1.242_014_1e-1,
+            1.424_932_3e-1,
+            -1.666_805_7e-1,
+            2.000_071_5e-1,
+            -2.499_999_4e-1,
+            3.333_333_1e-1,
+        ],
+    );
+    let small = r * z * tail + n * LN2_LOW - 0.5 * z;
+    r + small + n * LN2_HIGH
+}
+
 impl Real for f64 {
     real_basics!(f64);
     const TINY_SQUARE: Self = 1e-200;

@@ -1,6 +1,7 @@
 //! Automatic smoothing.
 
 pub(crate) mod body;
+pub(crate) mod gains;
 pub(crate) mod low_pass;
 pub(crate) mod patches;
 pub(crate) mod rank;

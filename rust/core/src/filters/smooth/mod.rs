@@ -13,12 +13,14 @@
 //! - `patches`: all joints by groups of similar patches;
 //! - `low_pass`: a fixed cut-off for all joints;
 //! - `rank`: all joints as few movements at a time;
+//! - `gains`: the learned last step;
 //! - `steps`, `products`, `symmetric`: which joints move together, products of matrices, eigenvectors;
 //! - `sums`: means of what overlapping pieces say.
 
 mod about;
 mod axes;
 mod body;
+mod gains;
 mod joint;
 mod low_pass;
 mod patches;
@@ -38,6 +40,7 @@ use crate::parallel::Interrupt;
 use crate::{ClipView, Error};
 pub use about::Noisy;
 pub use body::smooth_body;
+pub use gains::{Network, smooth_gains};
 pub use low_pass::LowPass;
 pub use patches::smooth_patches;
 pub use rank::smooth_rank;
