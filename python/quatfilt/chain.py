@@ -76,12 +76,23 @@ def plan(method: str | Sequence[str], preset: str | None, options: Mapping[str, 
         for option, value in step.settings.items():
             if value is REQUIRED:
                 raise TypeError(f"{step.name}.{option}: expected a value, got none")
+    return tuple(steps)
+
+
+def require_rate(steps: Sequence[Step], preset: str | None) -> None:
+    """Refuse steps of a preset whose cut-off is in hertz where the frame rate is not given.
+
+    Raises
+    ------
+    ValueError
+        If `fps` is not among the options of such a step.
+    """
+    for step in steps:
         if preset is not None and "cutoff" in step.chosen and "fps" not in step.chosen:
             raise ValueError(
                 f"preset {preset!r} needs the frame rate: pass fps=30 (frames per second); the cutoff of its step "
                 f"{step.name} is in hertz"
             )
-    return tuple(steps)
 
 
 def names(method: str | Sequence[str], preset: str | None) -> list[str]:
@@ -221,4 +232,4 @@ def _filtered(
     return result, moved
 
 
-__all__ = ["OF_THE_CLIP", "SHARED", "Step", "names", "plan", "refuse_early", "run"]
+__all__ = ["OF_THE_CLIP", "SHARED", "Step", "names", "plan", "refuse_early", "require_rate", "run"]

@@ -123,6 +123,7 @@ def denoise(
     if placement == "lock":
         raise TypeError(f"feet: expected a Motion to lock its feet, got {type(motion_or_rotations).__name__}")
     steps = chain.plan(method, preset, options)
+    chain.require_rate(steps, preset)
     scalar_first = options.get("scalar_first", True)
     array = _validation.quaternions(motion_or_rotations, "rotations", scalar_first=scalar_first)
     rotations, _ = _run(method, preset, steps, array, None)

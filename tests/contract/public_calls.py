@@ -10,6 +10,7 @@ NOT_KERNELS = {
     "FileAccessError": "an error",
     "FileFormatError": "an error",
     "Motion": "a class",
+    "NoiseModel": "a class",
     "MotionDatabase": "a class",
     "PoseGPLVM": "GPy learns it, for seconds",
     "PosePrediction": "a class",

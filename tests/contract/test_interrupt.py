@@ -37,7 +37,7 @@ CALLS = {
     ),
     "patches": (400_000, 20, "qf.patch_neighbors(q)"),
     "graph of poses": (200_000, 20, "qf.neighbor_graph(q.reshape(len(q), -1), [0, len(q)])"),
-    "spikes of wide radius": (20_000, 20, "qf.despike(q, radius=1000, smallest=0.0)"),
+    "spikes of wide radius": (20_000, 20, "qf.despike(q, radius=1000, threshold=1.0, smallest=0.0)"),
     "axes of a wide body": (4_000, 400, "_core.smooth_body(q, q, None, np.full(400, 0.05))"),
 }
 """Frames, joints, and minutes of work."""

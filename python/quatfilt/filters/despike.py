@@ -211,7 +211,7 @@ class _Limits:
         """Return the finished clip without its spikes, and where they were, ``(frames, joints)``."""
         found: Mask = np.zeros(clip.rotations.shape[:2], np.bool_)
 
-        whole = _normalized(clip)
+        whole = clip if clip.unchanged else _normalized(clip)
         noise = None
         if self.longest > 0 and not clip.unchanged:
             noise = np.asarray(ops().noise_level(whole.observed), np.float64)
