@@ -444,7 +444,13 @@ def test_the_translation_is_judged_by_itself():
     line = np.linspace([0.0, 1, 2], [9, 0, 5], FRAMES)
     spoilt_path = line.copy()
     spoilt_path[[20, 41, 42]] += 3.0
-    options = {"radius": RADIUS, "threshold": 4.0, "smallest": SMALLEST, "duration": "auto", "confidence": None}
+    options = {
+        "radius": RADIUS,
+        "threshold": 4.0,
+        "smallest": SMALLEST,
+        "duration": "auto",
+        "confidence": None,
+    }
     missing = {"gaps": "fill", "max_gap": None, "fps": 1.0, "scalar_first": True}
     before = spoilt_path.tobytes()
     result, moved = despike.with_translation(q, spoilt_path, **options, **missing)
