@@ -1,6 +1,6 @@
 //! Values at the source's measurements, and back to all frames by a natural cubic spline of the development.
 //!
-//! The development in the frame that is carried along is a path in R³. With a cut-off, it is first smoothed, some times about the
+//! The development in the frame that is carried along is a path in R³. With a cut-off, it is first smoothed, four times about the
 //! result of the round before: `Σ h_i |x_i − y_i|² + λ ∫ |x″|² dt → min`, `λ = (2π · cutoff)⁻⁴`, with the local spacing `h_i` as weights.
 //! Reinsch: `(R + λ Qᵀ W⁻¹ Q) γ = Qᵀ y`, `x = y − λ W⁻¹ Q γ`.
 
