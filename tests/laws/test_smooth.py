@@ -188,7 +188,11 @@ def test_short_clips_of_many_joints_are_left_to_the_pilot(backend):
 
 def public(q, translation=None, **options):
     missing = {"confidence": None, "gaps": "fill", "max_gap": None, "fps": 1.0, "scalar_first": True}
-    return with_translation(q, translation, **({"strength": 1.0, "joints": "apart"} | missing | options))
+    return with_translation(
+        q,
+        translation,
+        **({"strength": 1.0, "joints": "apart", "learned": False, "noise": "white"} | missing | options),
+    )
 
 
 def test_strength_zero_changes_nothing(backend):
