@@ -264,7 +264,11 @@ def _resampled(
     fps = steps[0].settings["fps"]
     rate = fps if fps == UNKNOWN_RATE else fps / source.spacing
     frames = np.floor(times).astype(np.intp)
-    slower = [_for_frames(step, frames, len(clip), fps=rate) for step in steps]
+    # A cut-off above the Nyquist frequency of the source's rate leaves everything: such a step has nothing to do.
+    below = [
+        step for step in steps if "cutoff" not in step.chosen or np.max(step.chosen["cutoff"]) < rate / 2
+    ]
+    slower = [_for_frames(step, frames, len(clip), fps=rate) for step in below or steps[:1]]
     measured = ops().knots(clip, times)
     along = (
         None if translation is None else ops().knots(np.ascontiguousarray(translation[:, None]), times)[:, 0]
