@@ -1,5 +1,6 @@
 """Files of compressed rotations: what is saved is loaded, and anything else is refused."""
 
+import dataclasses
 import pickle
 import struct
 import zlib
@@ -8,6 +9,7 @@ import clips
 import numpy as np
 import pytest
 import quatfilt as qf
+import tolerances
 
 
 def small(frames=120, joints=3):
@@ -42,7 +44,10 @@ def test_either_backend_reads_the_other(tmp_path):
     small().save(path)
     back = qf.Compressed.load(path).decompress()
     with qf.use_backend("numpy"):
-        assert small() == qf.Compressed.load(path)
+        other, own = qf.Compressed.load(path), small()
+        # The measured error differs by roundings; the file's numbers do not.
+        assert abs(other.max_error - own.max_error) < tolerances.FLOAT64
+        assert dataclasses.replace(own, max_error=other.max_error) == other
         np.testing.assert_array_equal(qf.Compressed.load(path).decompress(), back)
 
 

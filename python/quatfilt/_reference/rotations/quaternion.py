@@ -44,8 +44,20 @@ def conjugate(q: Reals) -> Reals:
 
 
 def between(a: Reals, b: Reals) -> Reals:
-    """Rotation `a⁻¹·b` that leads from `a` to `b`, for unit quaternions."""
-    return multiply(conjugate(a), b)
+    """Rotation `a⁻¹·b` that leads from `a` to `b`, for unit quaternions.
+
+    Terms that cancel between equal ones stand side by side: the rotation between them is 1 to the last bit.
+    """
+    (aw, ax, ay, az), (bw, bx, by, bz) = np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)
+    return np.stack(
+        [
+            aw * bw + ax * bx + ay * by + az * bz,
+            (aw * bx - ax * bw) + (az * by - ay * bz),
+            (aw * by - ay * bw) + (ax * bz - az * bx),
+            (aw * bz - az * bw) + (ay * bx - ax * by),
+        ],
+        axis=-1,
+    )
 
 
 def normalize(q: Reals) -> Reals:
