@@ -107,7 +107,7 @@ def smooth(
     Notes
     -----
     Cost: linear in frames and joints; together, the similarities of joints take time by the square of their number. Memory is about
-    three times the input beside the result, and linear in both. Single frames that lie far off are smeared: `despike` before.
+    four times the input beside the result, and linear in both. Single frames that lie far off are smeared: `despike` before.
 
     References
     ----------
