@@ -36,6 +36,9 @@ _ROUND = 2.0
 _UNROUND_SHARE = 0.3
 """Share of the joints that have to be unlike in their directions."""
 
+_WRAPPING = 0.5
+"""Radians: joints with a higher level are left out of colour and axes, which show how increments wrap rather than the noise."""
+
 _ORDERS = (4, 6, 8)
 """Orders of the differences that levels are read off."""
 
@@ -107,8 +110,10 @@ def measure(q: Array) -> Measured:
         # Impacts and spins come and go too.
         variance = np.ones(len(new))
         quiet = loud = white.astype(np.float64)
-    colour = evidence * ops().noise_colour(sample) if evidence > 0 else 0.0
+    wraps = white > _WRAPPING
+    colour = evidence * ops().noise_colour(np.ascontiguousarray(sample[:, ~wraps])) if evidence > 0 else 0.0
     spread, axes = ops().noise_axes(sample)
+    spread[wraps], axes[wraps] = 1.0, np.eye(3)
     return Measured(
         repeated,
         white.astype(np.float64),

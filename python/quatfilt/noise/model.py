@@ -40,7 +40,7 @@ class NoiseModel:
     >>> import numpy as np, quatfilt as qf
     >>> still = np.tile([1.0, 0.0, 0.0, 0.0], (3000, 1))
     >>> qf.noise_model(qf.add_gaussian_noise(still, sigma=0.02, rng=1), fps=120)
-    NoiseModel(level: 1.16° in the median over the joints, at most 1.16°; colour: white; along time: steady; repeats: none; spikes: none)
+    NoiseModel(level: 1.12° in the median over the joints, at most 1.12°; colour: white; along time: steady; repeats: none; spikes: none)
     """
 
     level: NDArray[np.float64]

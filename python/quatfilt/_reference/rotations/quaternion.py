@@ -51,7 +51,7 @@ def between(a: Reals, b: Reals) -> Reals:
     (aw, ax, ay, az), (bw, bx, by, bz) = np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)
     return np.stack(
         [
-            aw * bw + ax * bx + ay * by + az * bz,
+            (aw * bw + ax * bx) + (ay * by + az * bz),
             (aw * bx - ax * bw) + (az * by - ay * bz),
             (aw * by - ay * bw) + (ax * bz - az * bx),
             (aw * bz - az * bw) + (ay * bx - ax * by),

@@ -15,6 +15,7 @@ path goes on straight through the points where an angle is not defined, and as f
 import numpy as np
 
 from quatfilt._reference.geodesics.compress.arithmetic import Doubles, atan2, round_even, sin_cos
+from quatfilt._reference.rotations.quaternion import between
 
 TINY_SQUARE = 1e-200
 """Keeps the quotients of sines and angles from 0/0."""
@@ -50,7 +51,7 @@ def rotations(s: Doubles, centre: Doubles, axes: Doubles) -> Doubles:
 
 def angles(a: Doubles, b: Doubles) -> Doubles:
     """Rotation angles between rotations of any length, `(n, 4)` and `(n, 4)` → `(n,)`."""
-    w, x, y, z = product(conjugate(a), b).T
+    w, x, y, z = between(a, b).T
     return 2.0 * atan2(np.sqrt(x * x + y * y + z * z), np.abs(w))
 
 
