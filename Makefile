@@ -2,12 +2,14 @@
 #
 #   make PYTHON=python3.12 test    another Python for the virtual environment
 #   make test PYTEST="-k mean -x"  arguments for pytest
+#   make test JOBS=1               how many tests run at the same time
 #   make bench BENCH="rotations"   arguments for the benchmarks
 #   make test-properties SEEDS=20  from how many seeds examples are drawn
 
 PYTHON ?= python3
 VENV ?= .venv
 PYTEST ?=
+JOBS ?= 2
 BENCH ?=
 TRAIN ?=
 SEEDS ?= 20
@@ -75,12 +77,12 @@ test-rust: prerequisites
 
 .PHONY: test-python  ## Run the tests and doctests of the Python package (arguments: PYTEST="...")
 test-python: build $(VENV)/.group-test
-	$(BIN)/python -m pytest tests python/quatfilt $(PYTEST)
+	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal tests python/quatfilt $(PYTEST)
 
 .PHONY: test-properties  ## Run the tests that draw examples, from other seeds (arguments: SEEDS=20 PYTEST="...")
 test-properties: build $(VENV)/.group-test
 	@failed=; for seed in $$(seq $(SEEDS)); do echo "== seed $$seed"; \
-		$(BIN)/python -m pytest tests -m hypothesis --quiet --hypothesis-seed=$$seed $(PYTEST) || failed="$$failed $$seed"; \
+		$(BIN)/python -m pytest -n $(JOBS) --dist worksteal tests -m hypothesis --quiet --hypothesis-seed=$$seed $(PYTEST) || failed="$$failed $$seed"; \
 	done; [ -z "$$failed" ] || { echo "failed with the seeds$$failed"; exit 1; }
 
 .PHONY: test-debug  ## Run the contract and parity tests on a build with overflow checks
