@@ -12,7 +12,7 @@ from commands import refused, run
 from patience import PATIENCE
 from quatfilt.cli import main
 from quatfilt.evaluation.synthetic import walk
-from quatfilt.reconstruction.database.writer import folder_beside
+from quatfilt.formats._atomic import folder_beside
 
 
 @pytest.fixture(scope="module", name="takes")

@@ -1,9 +1,6 @@
 """Reading and writing motions, whatever the format."""
 
-import contextlib
 import os
-import secrets
-import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Literal, TypeAlias
@@ -11,6 +8,7 @@ from typing import Literal, TypeAlias
 from quatfilt import _validation
 from quatfilt.errors import FileAccessError, FileFormatError
 from quatfilt.formats import acclaim, bvh, npz
+from quatfilt.formats._atomic import Replacement, check_writable, reason
 from quatfilt.motion.motion import Motion
 from quatfilt.motion.skeleton import Skeleton
 
@@ -166,48 +164,21 @@ def read_bytes(path: str) -> bytes:
 
 
 def write_bytes(path: str, content: Callable[[], bytes]) -> None:
-    """Write what `content` returns under a temporary name beside `path`, and rename it."""
+    """Write what `content` returns; an older file stays as it was until the new one is complete."""
     try:
         target = Path(path).resolve()
         check_writable(target)
         data = content()
         if target.exists() and not target.is_file():  # a pipe, a terminal
             target.write_bytes(data)
-        else:
-            _replace(target, data)
+            return
+        with Replacement(target) as replacement:
+            replacement.file.write(data)
+            replacement.finish()
     except (OSError, ValueError) as error:
         if isinstance(error, FileFormatError):
             raise
         raise FileAccessError(path, reason(error)) from None
-
-
-def check_writable(target: Path) -> None:
-    """Refuse a place where no file can be written."""
-    if target.is_dir():
-        raise IsADirectoryError(None, "Is a directory")
-    if target.exists() and not os.access(target, os.W_OK):
-        raise PermissionError(None, "Permission denied")
-    if not target.parent.is_dir():
-        raise FileNotFoundError(None, "No such directory")
-
-
-def _replace(target: Path, data: bytes) -> None:
-    temporary = target.with_name(f".{target.name[:40]}.{secrets.token_hex(6)}.tmp")
-    try:
-        with temporary.open("xb") as file:
-            file.write(data)
-        if target.exists():
-            shutil.copymode(target, temporary)
-        temporary.replace(target)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            temporary.unlink()
-        raise
-
-
-def reason(error: Exception) -> str:
-    """Return what the system says."""
-    return getattr(error, "strerror", None) or str(error)
 
 
 __all__ = ["FirstFrame", "PathLike", "read_motion", "write_motion"]

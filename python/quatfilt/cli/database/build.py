@@ -13,11 +13,11 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from quatfilt import _validation
 from quatfilt.cli import _options, _output
 from quatfilt.cli.database._describe import describe, summary
+from quatfilt.formats._atomic import folder_beside
 from quatfilt.reconstruction.database import MotionDatabase, building
 from quatfilt.reconstruction.database.body import OtherJointsError
 from quatfilt.reconstruction.database.folders import Folders
 from quatfilt.reconstruction.database.takes import How
-from quatfilt.reconstruction.database.writer import folder_beside
 
 
 def build(
