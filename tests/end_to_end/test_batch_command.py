@@ -159,7 +159,7 @@ def test_a_folder_of_recordings(data_dir, tmp_path):
     ("words", "message"),
     [
         (["absent"], "absent: No such file or directory"),
-        (["day/notes.txt"], "notes.txt: expected .amc, .bvh, .npz or a folder, got .txt"),
+        (["day/notes.txt"], "notes.txt: expected .bvh, .amc or .npz, or a folder, got .txt"),
         (["none"], "none: expected motion files (.amc, .bvh, .npz), got none"),
         (["one.bvh", "again"], "again/one.bvh: expected another place than that of one.bvh, got out/one.bvh"),
         ([".", "--to", "fbx"], "--to: expected one of 'bvh', 'npz', got 'fbx'"),

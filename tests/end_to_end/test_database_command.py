@@ -139,7 +139,7 @@ def test_bad_input(takes, tmp_path, capsys):
         (tmp_path / "none",): f"{tmp_path / 'none'}: No such file or directory",
         (
             takes / "day" / "notes.txt",
-        ): f"{takes / 'day' / 'notes.txt'}: expected .amc, .bvh, .npz or a folder, got .txt",
+        ): f"{takes / 'day' / 'notes.txt'}: expected .bvh, .amc or .npz, or a folder, got .txt",
         (takes, "--fps", 0): "fps: expected a number above 0, got 0.0",
         (takes, "--source-fps", 0): "--source-fps: expected a number above 0, got 0.0",
         (takes, "--workers", 0): "--workers: expected an integer of at least 1, got 0",

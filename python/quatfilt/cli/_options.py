@@ -6,12 +6,13 @@ from typing import Annotated, TypeAlias, cast
 import typer
 
 from quatfilt import _backend
+from quatfilt.formats._table import READABLE, listed, needs_skeleton
 from quatfilt.formats.files import FirstFrame, read_motion
 from quatfilt.motion.motion import Motion
 
 Input: TypeAlias = Annotated[
     Path,
-    typer.Argument(metavar="IN", help="Motion file: .bvh, .amc (with its .asf) or .npz.", show_default=False),
+    typer.Argument(metavar="IN", help=f"Motion file: {listed(READABLE, notes=True)}.", show_default=False),
 ]
 Fps: TypeAlias = Annotated[
     float | None,
@@ -40,7 +41,7 @@ Threads: TypeAlias = Annotated[
 
 def read(path: Path, *, fps: float | None, skeleton: Path | None, first_frame: str) -> Motion:
     """Read a motion; a skeleton is for those that need one."""
-    needed = skeleton if path.suffix.lower() == ".amc" else None
+    needed = skeleton if needs_skeleton(path.suffix) else None
     return read_motion(path, fps=fps, skeleton=needed, first_frame=cast("FirstFrame", first_frame))
 
 

@@ -16,8 +16,7 @@ from quatfilt import _validation
 from quatfilt.cli import _cleaning, _errors, _options, _output, _steps
 from quatfilt.cli._batch import Task, done
 from quatfilt.errors import FileAccessError
-
-_EXTENSIONS = (".amc", ".bvh", ".npz")
+from quatfilt.formats._table import READABLE, WRITABLE, listed, written_as
 
 _LOG = "quatfilt-batch.jsonl"
 
@@ -116,20 +115,19 @@ def found(inputs: Sequence[Path], output: Path, to: str | None) -> list[Task]:
     ValueError
         If there is none, or if two of them would go to one place.
     """
-    extension = None if to is None else "." + _validation.choice(to, "--to", ("bvh", "npz"))
+    extension = None if to is None else "." + _validation.choice(to, "--to", tuple(x[1:] for x in WRITABLE))
     targets: dict[Path, Path] = {}
     for path in inputs:
         for source in _below(path, output):
             place = Path(source.name) if source == path else source.relative_to(path)
-            own = ".bvh" if source.suffix.lower() == ".amc" else source.suffix
-            target = output / place.with_suffix(extension or own)
+            target = output / place.with_suffix(extension or written_as(source.suffix))
             if targets.setdefault(target, source) != source:
                 raise ValueError(
                     f"{source}: expected another place than that of {targets[target]}, got {target}"
                 )
     if not targets:
         names = ", ".join(map(str, inputs))
-        raise ValueError(f"{names}: expected motion files ({', '.join(_EXTENSIONS)}), got none")
+        raise ValueError(f"{names}: expected motion files ({listed(READABLE)}), got none")
     return [Task(source, target) for target, source in targets.items()]
 
 
@@ -138,9 +136,9 @@ def _below(path: Path, output: Path) -> Iterator[Path]:
     if not path.exists():
         raise FileAccessError(str(path), "No such file or directory")
     if not path.is_dir():
-        if path.suffix.lower() not in _EXTENSIONS:
+        if path.suffix.lower() not in READABLE:
             raise ValueError(
-                f"{path}: expected {', '.join(_EXTENSIONS)} or a folder, got {path.suffix or 'no extension'}"
+                f"{path}: expected {listed(READABLE)}, or a folder, got {path.suffix or 'no extension'}"
             )
         yield path
         return
@@ -148,7 +146,7 @@ def _below(path: Path, output: Path) -> Iterator[Path]:
         written = source.resolve().is_relative_to(output.resolve()) and not path.resolve().is_relative_to(
             output.resolve()
         )
-        if source.suffix.lower() in _EXTENSIONS and source.is_file() and not written:
+        if source.suffix.lower() in READABLE and source.is_file() and not written:
             yield source
 
 

@@ -7,6 +7,7 @@ import typer
 
 from quatfilt.cli import _cleaning, _options, _output, _steps
 from quatfilt.cli.compare import in_one_unit, refuse_others
+from quatfilt.formats._table import written_as
 from quatfilt.motion.motion import Motion
 from quatfilt.motion.report import Report, check_path, report
 
@@ -151,8 +152,7 @@ def denoise(
 
 def beside(path: Path) -> Path:
     """Return where a cleaned file goes unless told."""
-    extension = ".bvh" if path.suffix.lower() == ".amc" else path.suffix
-    return path.with_name(f"{path.stem}.clean{extension}")
+    return path.with_name(f"{path.stem}.clean{written_as(path.suffix)}")
 
 
 def _say(path: Path, target: Path, cleaned: _cleaning.Cleaned) -> None:

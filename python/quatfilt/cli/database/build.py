@@ -14,6 +14,7 @@ from quatfilt import _validation
 from quatfilt.cli import _options, _output
 from quatfilt.cli.database._describe import describe, summary
 from quatfilt.formats._atomic import folder_beside
+from quatfilt.formats._table import READABLE, listed
 from quatfilt.reconstruction.database import MotionDatabase, building
 from quatfilt.reconstruction.database.body import OtherJointsError
 from quatfilt.reconstruction.database.folders import Folders
@@ -25,7 +26,7 @@ def build(
         list[Path],
         typer.Argument(
             metavar="DIR|FILE…",
-            help="Folders, searched at any depth for .bvh, .amc and .npz, and such files.",
+            help=f"Motion files ({listed(READABLE)}), and folders that are searched for them at any depth.",
             show_default=False,
         ),
     ],
