@@ -160,7 +160,7 @@ def test_a_folder_of_recordings(data_dir, tmp_path):
     [
         (["absent"], "absent: No such file or directory"),
         (["day/notes.txt"], "notes.txt: expected .bvh, .amc or .npz, or a folder, got .txt"),
-        (["none"], "none: expected motion files (.amc, .bvh, .npz), got none"),
+        (["none"], "none: expected motion files (.bvh, .amc or .npz), got none"),
         (["one.bvh", "again"], "again/one.bvh: expected another place than that of one.bvh, got out/one.bvh"),
         ([".", "--to", "fbx"], "--to: expected one of 'bvh', 'npz', got 'fbx'"),
         ([".", "--workers", "0"], "--workers: expected an integer of at least 1, got 0"),
