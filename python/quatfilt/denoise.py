@@ -1,4 +1,4 @@
-"""The way from a noisy clip or motion to a clean one that the command line runs."""
+"""Cleaning of a motion or an array with one filter or a chain."""
 
 from collections.abc import Sequence
 from typing import Any, overload
@@ -112,7 +112,7 @@ def denoise(
     if isinstance(motion_or_rotations, Motion):
         motion = motion_or_rotations
         if "scalar_first" in options:
-            raise TypeError("scalar_first: expected no such option with a Motion, got one")
+            raise TypeError("scalar_first applies to arrays only; a Motion has its own convention")
         steps = chain.plan(method, preset, {"fps": motion.fps, **options})
         rotations, moved = _run(
             method, preset, steps, motion.rotations, motion.translation if translation else None
@@ -121,7 +121,9 @@ def denoise(
         result = motion.replace(rotations=rotations, **changes)
         return result if placement is None else with_feet(motion, result, placement, translation=translation)
     if placement == "lock":
-        raise TypeError(f"feet: expected a Motion to lock its feet, got {type(motion_or_rotations).__name__}")
+        raise TypeError(
+            f"feet='lock' needs a Motion, which has a skeleton, got {type(motion_or_rotations).__name__}"
+        )
     steps = chain.plan(method, preset, options)
     chain.require_rate(steps, preset)
     scalar_first = options.get("scalar_first", True)

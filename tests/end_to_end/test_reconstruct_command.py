@@ -66,18 +66,18 @@ def test_of_a_motion_with_its_error(files, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ([], "--points, --motion: expected one of them"),
-        (["--points", "points.csv", "--motion", "walk.bvh"], "--points, --motion: expected one of them"),
-        (["--motion", "walk.bvh"], "--joints: expected the control points of --motion, got none"),
+        ([], "pass either --points or --motion"),
+        (["--points", "points.csv", "--motion", "walk.bvh"], "pass either --points or --motion"),
+        (["--motion", "walk.bvh"], "--motion needs the control points: pass --joints NAME,NAME…"),
         (
             ["--motion", "walk.bvh", "--joints", "LeftWirst"],
-            "--joints: expected joints of the database, got 'LeftWirst'; close to it: LeftWrist, ",
+            "--joints: the database has no joint 'LeftWirst'; similar names: LeftWrist, ",
         ),
-        (["--points", "points.csv", "--joints", "Head"], "--joints: expected with --motion"),
+        (["--points", "points.csv", "--joints", "Head"], "--joints is for --motion only"),
         (["--points", "points.csv", "--fps", 0], "fps: expected a number above 0, got 0.0"),
         (
             ["--points", "points.csv", "--fps", 0.001],
-            "fps: expected from 0.6 to 6000 hertz, for the database has 60, got 0.001",
+            "fps: expected 0.6 to 6000 hertz, because the database has 60, got 0.001",
         ),
         (["--points", "none.csv"], "none.csv: No such file or directory"),
         (["--points", "points.csv", "--model", "magic"], "model: expected one of 'local_regression'"),
