@@ -139,6 +139,7 @@ docs: build $(VENV)/.group-docs
 pictures: build
 	$(BIN)/python -m quatfilt.evaluation.picture docs/images/denoise.png
 	$(BIN)/python docs/images/filters.py
+	$(BIN)/python docs/images/pages.py
 
 .PHONY: dist  ## Build the source distribution and a wheel into dist
 dist: $(VENV)/.group-build
