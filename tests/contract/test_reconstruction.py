@@ -34,7 +34,7 @@ def positions(frames=4):
         (
             {"control_points": ["qqq"]},
             ValueError,
-            r"control_points: expected joints of the database, got 'qqq'; they are Hips, ",
+            r"control_points: the database has no joint 'qqq'; the joints are Hips, ",
         ),
         ({"control_points": []}, ValueError, "control_points: expected at least one joint, got none"),
         (

@@ -90,11 +90,11 @@ def test_bad_options(files, arguments, message):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "bad.csv: expected a header and rows, got nothing"),
+        ("", "bad.csv: expected a header and rows, got an empty file"),
         ("Head.x,Head.y,Head.z\n", "bad.csv: expected rows below the header, got none"),
         ("Head.x,Head.y\n1,2\n", "bad.csv: expected a column Head.z beside those of Head"),
         ("frame\n1\n", "bad.csv: expected columns joint.x, joint.y, joint.z, got none"),
-        ("Head.x,Head.x\n1,2\n", "bad.csv: expected columns of different names, got 'Head.x' twice"),
+        ("Head.x,Head.x\n1,2\n", "bad.csv: two columns are named 'Head.x'; name each column once"),
         (
             "Head,Head.x\n1,2\n",
             "bad.csv: expected columns joint.x, joint.y, joint.z, time or frame, got 'Head'",
@@ -107,10 +107,13 @@ def test_bad_options(files, arguments, message):
         ),
         ("Head.x,Head.y,Head.z\n1,2,inf\n", "bad.csv: line 2: expected a number, got 'inf'"),
         (f"Head.x,Head.y,Head.z\n1,2,{'3' * 200_000}\n", "bad.csv: line 2: field larger than field limit"),
-        ("Head.x,Head.y,Head.z\n1,2,3\n", "bad.csv: expected a column time in seconds, or --fps"),
+        (
+            "Head.x,Head.y,Head.z\n1,2,3\n",
+            "bad.csv: the frame rate is missing; add a column time in seconds, or pass --fps",
+        ),
         (
             "time,Head.x,Head.y,Head.z\n0,1,2,3\n1,1,2,3\n5,1,2,3\n",
-            "bad.csv: expected times in seconds at one rate",
+            "bad.csv: the column time must have seconds at a constant frame rate",
         ),
     ],
 )
