@@ -10,7 +10,7 @@ use quatfilt_core::reconstruction::local_models::{Model, Neighbors, Options, pre
 use quatfilt_core::reconstruction::solver::Targets;
 use quatfilt_core::reconstruction::tracker::{self, Poses, Tables, Tracker};
 use quatfilt_core::search::poses::graph::{self, Apart, Graph};
-use quatfilt_core::search::poses::walk::Trust;
+use quatfilt_core::search::poses::walk::Fallback;
 use quatfilt_core::search::poses::{Index, Segments};
 use quatfilt_core::{ClipView, Error, Real};
 use std::sync::Arc;
@@ -156,6 +156,6 @@ fn options() -> tracker::Options {
         model: Options { ridge: 0.1, share: 0.95, ..Options::default() },
         floor: [0.045, 2.5, 2.5, 0.5, 0.05],
         steps: 12,
-        trust: Trust { frames: 60, ratio: 1.5 },
+        fallback: Fallback { frames: 60, ratio: 1.5 },
     }
 }

@@ -13,7 +13,7 @@ use quatfilt_core::reconstruction::kinematics::{Body, WAY};
 use quatfilt_core::reconstruction::solver::Targets;
 use quatfilt_core::reconstruction::tracker::{Options, Poses, State, Tables, Tracker};
 use quatfilt_core::search::poses::graph::Graph;
-use quatfilt_core::search::poses::walk::Trust;
+use quatfilt_core::search::poses::walk::Fallback;
 use std::sync::{Arc, Mutex, TryLockError};
 
 /// Nanoseconds that a frame takes beside the search, by which it is decided whether to listen for Ctrl-C.
@@ -152,7 +152,7 @@ fn tracker(
         model,
         floor,
         steps,
-        trust: Trust { frames, ratio },
+        fallback: Fallback { frames, ratio },
     };
     let state = initial
         .map(|(recent, place, heading)| {

@@ -55,7 +55,7 @@ pub(crate) struct Diagonal<T> {
     squares: Vec<T>,
     shares: Vec<T>,
     totals: Vec<T>,
-    spare: Vec<T>,
+    scratch: Vec<T>,
 }
 
 impl<T: Real> Diagonal<T> {
@@ -75,19 +75,19 @@ impl<T: Real> Diagonal<T> {
         let span = (out.len() + window - 1).next_multiple_of(LANES);
         let at = at.map(|at| at - measure.before);
         let (joints, factors) = (measure.joints.clone(), &measure.factors[..]);
-        let Self { squares, shares, totals, spare } = self;
+        let Self { squares, shares, totals, scratch } = self;
         squares.resize(span, T::ZERO);
         if a.shares.is_some() {
             shares.resize(span, T::ZERO);
             totals.resize(out.len(), T::ZERO);
             let sums = [&mut squares[..], &mut shares[..]];
             kernels::shared_frame_distances(sums, a, b, at, joints, factors, &measure.units);
-            kernels::sliding_sums(squares, spare, window, out);
-            kernels::sliding_sums(shares, spare, window, totals);
+            kernels::sliding_sums(squares, scratch, window, out);
+            kernels::sliding_sums(shares, scratch, window, totals);
             kernels::shared_roots(out, totals, measure.averaged);
         } else {
             kernels::frame_distances(squares, a, b, at, joints, factors);
-            kernels::sliding_sums(squares, spare, window, out);
+            kernels::sliding_sums(squares, scratch, window, out);
             kernels::roots(out, T::from_f64(1.0 / measure.divisor()));
         }
     }

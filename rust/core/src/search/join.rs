@@ -71,7 +71,7 @@ impl<T: Real> Join<'_, T> {
     ) -> Result<(), Error> {
         let Some(lags) = self.lags() else { return Ok(()) };
         if let Some(bounds) = self.bounds
-            && bounds.tell(&self.frames.features)
+            && bounds.apply_to(&self.frames.features)
         {
             return self.sift(&lags, bounds, lists, scratch, interrupt);
         }
@@ -127,7 +127,7 @@ impl<T: Real> Join<'_, T> {
             let limits = &mut limits[..frames.len()];
             strip.load(bounds, self.measure, &self.frames, frames.clone());
             if !self.mutual {
-                self.sow(lags, &frames, lists, scratch);
+                self.seed(lags, &frames, lists, scratch);
             }
             for tile in self.tiles(&frames) {
                 interrupt.check()?;
@@ -189,13 +189,13 @@ impl<T: Real> Join<'_, T> {
     pub(crate) fn prepare(&self, lists: &Lists<T>, scratch: &mut Scratch<T>) {
         if let Some(lags) = self.lags() {
             for start in (0..self.frames.count).step_by(ROWS) {
-                self.sow(&lags, &(start..self.frames.count.min(start + ROWS)), lists, scratch);
+                self.seed(&lags, &(start..self.frames.count.min(start + ROWS)), lists, scratch);
             }
         }
     }
 
     /// Offers the candidates nearest in time, which often are the nearest, and where there are not enough, some of all.
-    fn sow(
+    fn seed(
         &self,
         lags: &RangeInclusive<isize>,
         frames: &Range<usize>,

@@ -137,8 +137,8 @@ multiversion! {
 /// Windows are put together from sums over powers of two, so the cost hardly grows with the window, every sum is of
 /// positive terms only, and none runs on: a burst in one place leaves no error elsewhere, and a sum depends on its own
 /// terms alone, wherever the values begin. `values` is used up.
-pub(crate) fn sliding_sums<T: Real>(values: &mut Vec<T>, spare: &mut Vec<T>, window: usize, out: &mut [T]) {
-    sums_along(values, spare, window, 1, out);
+pub(crate) fn sliding_sums<T: Real>(values: &mut Vec<T>, scratch: &mut Vec<T>, window: usize, out: &mut [T]) {
+    sums_along(values, scratch, window, 1, out);
 }
 
 /// Sums of values that are `step` apart: `out[i] = values[i] + … + values[i + (window − 1)·step]`, as [`sliding_sums`].
@@ -146,7 +146,7 @@ pub(crate) fn sliding_sums<T: Real>(values: &mut Vec<T>, spare: &mut Vec<T>, win
 /// With rows one number shorter than the step, these are sums along the diagonals of a matrix.
 pub(crate) fn sums_along<T: Real>(
     values: &mut Vec<T>,
-    spare: &mut Vec<T>,
+    scratch: &mut Vec<T>,
     window: usize,
     step: usize,
     out: &mut [T],
@@ -163,9 +163,9 @@ pub(crate) fn sums_along<T: Real>(
             return;
         }
         let length = values.len() - power * step;
-        spare.resize(length, T::ZERO);
-        add_shifted(&mut spare[..length], values, power * step);
-        std::mem::swap(values, spare);
+        scratch.resize(length, T::ZERO);
+        add_shifted(&mut scratch[..length], values, power * step);
+        std::mem::swap(values, scratch);
         values.truncate(length);
         power *= 2;
     }

@@ -75,17 +75,17 @@ impl<T: Real> Nearest<T> {
             }
             kept -= 1;
         }
-        let mut place = kept;
-        while place > 0 && precedes(place - 1) {
-            place -= 1;
+        let mut index = kept;
+        while index > 0 && precedes(index - 1) {
+            index -= 1;
         }
-        if place > 0 && self.numbers[row + place - 1] == number {
+        if index > 0 && self.numbers[row + index - 1] == number {
             return;
         }
-        self.distances.copy_within(row + place..row + kept, row + place + 1);
-        self.numbers.copy_within(row + place..row + kept, row + place + 1);
-        self.distances[row + place] = distance;
-        self.numbers[row + place] = number;
+        self.distances.copy_within(row + index..row + kept, row + index + 1);
+        self.numbers.copy_within(row + index..row + kept, row + index + 1);
+        self.distances[row + index] = distance;
+        self.numbers[row + index] = number;
         self.kept[frame] = kept + 1;
         if kept + 1 == self.count {
             self.limits[frame] = self.distances[row + kept];
@@ -119,27 +119,27 @@ impl<T: Real> Lists<T> {
 
     /// The list of a frame, and which of its frames that is.
     fn list(&self, frame: usize) -> (MutexGuard<'_, Nearest<T>>, usize) {
-        let place = frame - self.first;
-        let list = self.each[place / self.length].lock();
-        (list.unwrap_or_else(PoisonError::into_inner), place % self.length)
+        let index = frame - self.first;
+        let list = self.each[index / self.length].lock();
+        (list.unwrap_or_else(PoisonError::into_inner), index % self.length)
     }
 
     /// Writes the limits of frames of a list.
     pub(crate) fn read_limits(&self, first: usize, limits: &mut [T]) {
-        let (list, place) = self.list(first);
-        limits.copy_from_slice(&list.limits[place..place + limits.len()]);
+        let (list, index) = self.list(first);
+        limits.copy_from_slice(&list.limits[index..index + limits.len()]);
     }
 
     /// Offers candidates to frames of a list, to each the one that follows that of the frame before.
     pub(crate) fn offer(&self, first: usize, number: usize, distances: &[T], marks: &mut Vec<u8>) {
-        let (mut list, place) = self.list(first);
+        let (mut list, index) = self.list(first);
         marks.resize(distances.len(), 0);
-        if !kernels::mark_nearest(marks, distances, &list.limits[place..place + distances.len()]) {
+        if !kernels::mark_nearest(marks, distances, &list.limits[index..index + distances.len()]) {
             return;
         }
         for (i, distance) in distances.iter().enumerate() {
             if marks[i] != 0 {
-                list.offer(place + i, *distance, number + i);
+                list.offer(index + i, *distance, number + i);
             }
         }
     }

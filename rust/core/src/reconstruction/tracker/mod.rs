@@ -22,7 +22,7 @@ use crate::Error;
 use crate::error::check_length;
 use crate::parallel::Interrupt;
 use crate::rotations::quaternion::{between, log_short, of_row, product};
-use crate::search::poses::walk::Trust;
+use crate::search::poses::walk::Fallback;
 use lattice::Lattice;
 use recent::Recent;
 use search::{Example, Query};
@@ -60,7 +60,7 @@ pub struct Options {
     /// The most steps of the solver per frame.
     pub steps: usize,
     /// With a graph: when all examples are looked at nevertheless.
-    pub trust: Trust,
+    pub fallback: Fallback,
 }
 
 /// What is known of the frames before.
@@ -257,11 +257,11 @@ impl Tracker {
             poses.feature(pose, &mut features);
         }
         let recent = Recent::new(features, self.options.order);
-        let trust = self.options.trust;
-        if let Some(graph) = poses.graph.filter(|_| walk.goes_on(trust)) {
+        let fallback = self.options.fallback;
+        if let Some(graph) = poses.graph.filter(|_| walk.goes_on(fallback)) {
             let around = walk.around(&candidates.0, graph, &mut self.bits);
             let found = self.query(poses, candidates).among(&recent, &around);
-            if walk.trusts(&found, self.options.neighbors, trust) {
+            if walk.keeps(&found, self.options.neighbors, fallback) {
                 let walk = walk.follow(&found, false);
                 return Ok((found, walk));
             }

@@ -8,7 +8,7 @@
 use super::lattice::Lattice;
 use super::search::Example;
 use crate::search::poses::graph::Graph;
-use crate::search::poses::walk::Trust;
+use crate::search::poses::walk::Fallback;
 
 /// What the frame before tells of the next.
 #[derive(Debug, Clone, Default)]
@@ -23,15 +23,15 @@ pub(super) struct Walk {
 
 impl Walk {
     /// Whether the graph may be asked.
-    pub(super) fn goes_on(&self, trust: Trust) -> bool {
-        self.since.is_some_and(|since| since < trust.frames)
+    pub(super) fn goes_on(&self, fallback: Fallback) -> bool {
+        self.since.is_some_and(|since| since < fallback.frames)
     }
 
     /// Whether examples that were found along the graph are near enough.
-    pub(super) fn trusts(&self, found: &[Example], count: usize, trust: Trust) -> bool {
+    pub(super) fn keeps(&self, found: &[Example], count: usize, fallback: Fallback) -> bool {
         found.len() == count
             && found.last().is_some_and(|last| {
-                !trust.ratio.is_finite() || last.square.sqrt() <= self.least * trust.ratio
+                !fallback.ratio.is_finite() || last.square.sqrt() <= self.least * fallback.ratio
             })
     }
 

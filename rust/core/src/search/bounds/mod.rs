@@ -121,7 +121,7 @@ impl<T: Real> Bounds<T> {
     }
 
     /// Whether they tell anything about frames, which have to be compared as the candidates are.
-    pub(crate) fn tell(&self, features: &Features<'_, T>) -> bool {
+    pub(crate) fn apply_to(&self, features: &Features<'_, T>) -> bool {
         let any = self.chords.is_some() || self.points.is_some();
         any && self.kinds.iter().zip(features.joints).all(|(kind, joint)| *kind == joint.kind)
     }

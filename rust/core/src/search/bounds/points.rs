@@ -23,7 +23,7 @@ pub(super) struct Points<T> {
     /// Directions, `(WIDTH, dims)`.
     pub(super) basis: Vec<T>,
     /// Blocks along the directions.
-    pub(super) shadows: Stage<T>,
+    pub(super) projections: Stage<T>,
     /// Blocks.
     pub(super) blocks: Stage<T>,
     /// Points, `(candidates, dims)`.
@@ -40,8 +40,8 @@ pub(super) struct Summary<T> {
     dims: usize,
     points: Vec<T>,
     blocks: Vec<T>,
-    shadows: Vec<T>,
-    /// The squares of the lengths of the points, the blocks and their shadows.
+    projections: Vec<T>,
+    /// The squares of the lengths of the points, the blocks and their projections.
     pub(super) squares: [Vec<T>; 3],
     /// Of each block, the distance of the farthest point.
     pub(super) radii: Vec<T>,
@@ -49,7 +49,7 @@ pub(super) struct Summary<T> {
     pub(super) longest: T,
     planes: Vec<T>,
     values: Vec<T>,
-    spare: Vec<T>,
+    scratch: Vec<T>,
 }
 
 /// The planes of a group.
@@ -77,16 +77,16 @@ impl<T: Real> Summary<T> {
         let window = measure.window();
         let (length, start) = (count + window - 1, at - measure.before);
         let dims = axes.count().next_multiple_of(LANES);
-        let Self { points, blocks, shadows, squares, radii, planes, values, spare, .. } = self;
+        let Self { points, blocks, projections, squares, radii, planes, values, scratch, .. } = self;
         (self.count, self.dims) = (count, dims);
         let several = count.div_ceil(BLOCK);
         clear(points, dims * count);
         clear(blocks, dims * several);
-        clear(shadows, WIDTH * several);
-        let [of_points, of_blocks, of_shadows] = squares;
+        clear(projections, WIDTH * several);
+        let [of_points, of_blocks, of_projections] = squares;
         clear(of_points, count);
         clear(of_blocks, several);
-        clear(of_shadows, several);
+        clear(of_projections, several);
         clear(radii, several);
         if count == 0 {
             return;
@@ -98,7 +98,7 @@ impl<T: Real> Summary<T> {
             for (plane, sums) in group.into_iter().zip(points[axis * count..].chunks_exact_mut(count)) {
                 values.clear();
                 values.extend_from_slice(plane);
-                sliding_sums(values, spare, window, sums);
+                sliding_sums(values, scratch, window, sums);
                 for sum in sums {
                     *sum *= share;
                 }
@@ -127,13 +127,13 @@ impl<T: Real> Summary<T> {
             kernels::add_squares(of_points, group(points, first, count));
             let planes = group(blocks, first, several);
             kernels::add_squares(of_blocks, planes);
-            for (shadow, vector) in shadows.chunks_exact_mut(several).zip(basis.chunks_exact(dims)) {
+            for (projection, vector) in projections.chunks_exact_mut(several).zip(basis.chunks_exact(dims)) {
                 let by = [vector[first], vector[first + 1], vector[first + 2], vector[first + 3]];
-                kernels::add_combination(shadow, planes, by);
+                kernels::add_combination(projection, planes, by);
             }
         }
         for first in (0..WIDTH).step_by(GROUP) {
-            kernels::add_squares(of_shadows, group(shadows, first, several));
+            kernels::add_squares(of_projections, group(projections, first, several));
         }
     }
 
@@ -147,14 +147,14 @@ impl<T: Real> Summary<T> {
         write(&self.blocks, self.radii.len(), rows);
     }
 
-    /// Writes the shadows of the blocks, row by row.
-    pub(super) fn write_shadows(&self, rows: &mut [T]) {
-        write(&self.shadows, self.radii.len(), rows);
+    /// Writes the projections of the blocks, row by row.
+    pub(super) fn write_projections(&self, rows: &mut [T]) {
+        write(&self.projections, self.radii.len(), rows);
     }
 
     /// Runs `work(first, planes)` for each group of numbers of the blocks.
-    fn each_group(&self, shadows: bool, mut work: impl FnMut(usize, [&[T]; GROUP])) {
-        let (planes, dims) = if shadows { (&self.shadows, WIDTH) } else { (&self.blocks, self.dims) };
+    fn each_group(&self, projections: bool, mut work: impl FnMut(usize, [&[T]; GROUP])) {
+        let (planes, dims) = if projections { (&self.projections, WIDTH) } else { (&self.blocks, self.dims) };
         for first in (0..dims).step_by(GROUP) {
             work(first, group(planes, first, self.radii.len()));
         }
@@ -192,38 +192,38 @@ impl<T: Real> Points<T> {
         let basis: Vec<T> = directions(&segments, WIDTH).into_iter().map(T::from_f64).collect();
         let blocks = side.count.div_ceil(BLOCK);
         let per_tile = COLUMNS / BLOCK;
-        let mut shadows = Stage::new(measure, WIDTH, WIDTH / GROUP, blocks, per_tile, 0);
+        let mut projections = Stage::new(measure, WIDTH, WIDTH / GROUP, blocks, per_tile, 0);
         let mut several = Stage::new(measure, dims, dims / GROUP, blocks, per_tile, 0);
         let mut rows = vec![T::ZERO; side.count * dims];
-        let tasks: Vec<_> = shadows
+        let tasks: Vec<_> = projections
             .tasks(TASK / BLOCK)
             .into_iter()
             .zip(several.tasks(TASK / BLOCK))
             .zip(rows.chunks_mut(TASK * dims))
             .collect();
         let parts =
-            parallel::map(tasks, side.count * dims * 8, |task, ((mut shadows, mut blocks), rows)| {
+            parallel::map(tasks, side.count * dims * 8, |task, ((mut projections, mut blocks), rows)| {
                 interrupt.check()?;
                 let first = task * TASK;
                 let mut summary = Summary::default();
                 summary.read(&axes, &basis, measure, &side.features, side.at + first, rows.len() / dims);
                 summary.write_points(rows);
-                summary.each_group(true, |first, group| shadows.write(first, group));
+                summary.each_group(true, |first, group| projections.write(first, group));
                 summary.each_group(false, |first, group| blocks.write(first, group));
                 Ok((summary.squares, summary.radii, summary.longest))
             })?;
         let longest = parts.iter().fold(T::ZERO, |most, (.., longest)| most.max(*longest));
         let squares = |i: usize| parts.iter().flat_map(|(squares, ..)| &squares[i]).copied().collect();
         let radii: Vec<T> = parts.iter().flat_map(|(_, radii, _)| radii).copied().collect();
-        let (mut of_points, of_blocks, of_shadows): (Vec<T>, Vec<T>, Vec<T>) =
+        let (mut of_points, of_blocks, of_projections): (Vec<T>, Vec<T>, Vec<T>) =
             (squares(0), squares(1), squares(2));
-        for (stage, squares) in [(&mut shadows, of_shadows), (&mut several, of_blocks)] {
+        for (stage, squares) in [(&mut projections, of_projections), (&mut several, of_blocks)] {
             stage.project(dims + measure.window(), longest);
             stage.add_up(&squares, 1);
             stage.set_radii(&radii);
         }
         let mut halves = vec![T::ZERO; side.count];
         several.half(&mut of_points, 1, &mut halves);
-        Ok(Self { axes, dims, basis, shadows, blocks: several, rows, halves })
+        Ok(Self { axes, dims, basis, projections, blocks: several, rows, halves })
     }
 }

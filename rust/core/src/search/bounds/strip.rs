@@ -58,14 +58,14 @@ struct Limits<T> {
 pub(crate) struct Strip<T> {
     frames: usize,
     chords: Rows<T>,
-    shadows: Rows<T>,
+    projections: Rows<T>,
     blocks: Rows<T>,
     points: Rows<T>,
     others: Limits<T>,
     summary: Summary<T>,
     products: Vec<T>,
     sums: Vec<T>,
-    spare: Vec<T>,
+    scratch: Vec<T>,
     marks: Vec<u8>,
     near: Vec<(usize, usize)>,
 }
@@ -86,7 +86,7 @@ impl<T: Real> Strip<T> {
             let length = frames.len() + stage.border;
             let mut squares = vec![T::ZERO; length];
             let rows = self.chords.reset(length, stage.dims);
-            axes.each_group(features, start..start + length, &mut self.spare, |first, [a, b, c, d]| {
+            axes.each_group(features, start..start + length, &mut self.scratch, |first, [a, b, c, d]| {
                 kernels::add_squares(&mut squares, [a, b, c, d]);
                 for (i, row) in rows.chunks_exact_mut(stage.dims).take(length).enumerate() {
                     row[first..first + GROUP].copy_from_slice(&[a[i], b[i], c[i], d[i]]);
@@ -95,16 +95,16 @@ impl<T: Real> Strip<T> {
             self.chords.halve(stage, &mut squares, measure.window());
         }
         if let Some(points) = &bounds.points {
-            let Self { shadows, blocks, points: own, summary, .. } = self;
+            let Self { projections, blocks, points: own, summary, .. } = self;
             summary.read(&points.axes, &points.basis, measure, features, at, frames.len());
             let count = summary.radii.len();
-            summary.write_shadows(shadows.reset(count, WIDTH));
+            summary.write_projections(projections.reset(count, WIDTH));
             summary.write_blocks(blocks.reset(count, points.dims));
             summary.write_points(own.reset(frames.len(), points.dims));
-            let [of_points, of_blocks, of_shadows] = &mut summary.squares;
+            let [of_points, of_blocks, of_projections] = &mut summary.squares;
             own.halve(&points.blocks, of_points, 1);
             blocks.halve(&points.blocks, of_blocks, 1);
-            shadows.halve(&points.shadows, of_shadows, 1);
+            projections.halve(&points.projections, of_projections, 1);
         }
     }
 
@@ -115,10 +115,10 @@ impl<T: Real> Strip<T> {
             self.chords.know(limits, std::iter::repeat(T::ZERO));
         }
         if let Some(points) = &bounds.points {
-            let Self { shadows, blocks, points: own, summary, .. } = self;
+            let Self { projections, blocks, points: own, summary, .. } = self;
             let reach = |limit: T| points.blocks.reach(limit, summary.longest);
             own.know(limits.iter().map(|limit| reach(*limit)), std::iter::repeat(T::ZERO));
-            for rows in [blocks, shadows] {
+            for rows in [blocks, projections] {
                 rows.know(
                     limits.chunks(BLOCK).map(|limits| reach(farthest(limits))),
                     summary.radii.iter().copied(),
@@ -148,7 +148,7 @@ impl<T: Real> Strip<T> {
         let first = tile * COLUMNS;
         let (mut rows, mut columns) = (0..self.frames, first..first + COLUMNS);
         if let Some(points) = &bounds.points {
-            let Some(part) = self.part(&points.shadows, tile) else { return };
+            let Some(part) = self.part(&points.projections, tile) else { return };
             self.near_blocks(&points.blocks, tile, &part);
             rows = part.0.start * BLOCK..self.frames.min(part.0.end * BLOCK);
             columns = part.1.start * BLOCK..part.1.end * BLOCK;
@@ -163,21 +163,21 @@ impl<T: Real> Strip<T> {
         }
     }
 
-    /// The blocks of a tile between which all pairs lie whose shadows are near enough.
+    /// The blocks of a tile between which all pairs lie whose projections are near enough.
     fn part(&mut self, stage: &Stage<T>, tile: usize) -> Option<(Range<usize>, Range<usize>)> {
         let width = COLUMNS / BLOCK;
-        let Self { shadows, products, marks, others, .. } = self;
-        let (first, tall) = (tile * width, shadows.numbers.len() / WIDTH);
+        let Self { projections, products, marks, others, .. } = self;
+        let (first, tall) = (tile * width, projections.numbers.len() / WIDTH);
         products.resize(tall * width, T::ZERO);
         let panels = &stage.panels[first * WIDTH..(first + width) * WIDTH];
-        kernels::products(products, &shadows.numbers, panels, WIDTH, stage.signed);
+        kernels::products(products, &projections.numbers, panels, WIDTH, stage.signed);
         let columns = known(stage, first..first + width, &others.blocks);
-        marks.resize(shadows.known.len(), 0);
-        kernels::mark_rows(marks, products, &shadows.known, columns);
+        marks.resize(projections.known.len(), 0);
+        kernels::mark_rows(marks, products, &projections.known, columns);
         let rows = marked(marks)?;
         marks.resize(width / LANES, 0);
         let within = &products[rows.start * width..rows.end * width];
-        kernels::mark_panels(marks, within, &shadows.known[rows.clone()], columns);
+        kernels::mark_panels(marks, within, &projections.known[rows.clone()], columns);
         let panels = marked(marks)?;
         // Whole tiles of rows.
         Some((rows.start / TALL * TALL..rows.end, first + panels.start * LANES..first + panels.end * LANES))
@@ -235,7 +235,7 @@ impl<T: Real> Strip<T> {
         columns: Range<usize>,
         work: &mut impl FnMut(usize, usize),
     ) {
-        let Self { chords, products, sums, spare, marks, others, .. } = self;
+        let Self { chords, products, sums, scratch, marks, others, .. } = self;
         let width = (columns.len() + stage.border).next_multiple_of(LANES);
         let tall = (rows.len() + stage.border).next_multiple_of(TALL);
         let numbers = &chords.numbers[rows.start * stage.dims..(rows.start + tall) * stage.dims];
@@ -243,7 +243,7 @@ impl<T: Real> Strip<T> {
         let panels = &stage.panels[columns.start * stage.dims..(columns.start + width) * stage.dims];
         kernels::products(products, numbers, panels, stage.dims, stage.signed);
         sums.resize((rows.len() - 1) * width + columns.len(), T::ZERO);
-        sums_along(products, spare, stage.border + 1, width + 1, sums);
+        sums_along(products, scratch, stage.border + 1, width + 1, sums);
         let known = known(stage, columns.clone(), &others.chords[columns.start - first..]);
         marks.resize(columns.len(), 0);
         for (row, sums) in rows.zip(sums.chunks(width)) {

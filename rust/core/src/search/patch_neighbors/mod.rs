@@ -35,7 +35,7 @@ const CHUNK_FRAMES: usize = 16_384;
 const FEW_FRAMES: usize = 128;
 
 /// What a number that is not there stands for.
-const NOBODY: i64 = -1;
+const NO_NEIGHBOR: i64 = -1;
 
 /// The parameters of the search.
 #[derive(Debug, Clone)]
@@ -77,7 +77,7 @@ impl PatchNeighbors {
         for other in library.unwrap_or_default() {
             check_length("joints of the library", joints, other.joints())?;
         }
-        indices.fill(NOBODY);
+        indices.fill(NO_NEIGHBOR);
         distances.fill(T::ONE / T::ZERO);
         if joints == 0 || frames == 0 {
             return Ok(());
@@ -100,7 +100,7 @@ impl PatchNeighbors {
             for frame in tile * TASK_FRAMES..frames.min((tile + 1) * TASK_FRAMES) {
                 let row = frame * self.count;
                 for (i, (distance, number)) in nearest.of(frame - tile * TASK_FRAMES).enumerate() {
-                    indices[row + i] = i64::try_from(number).unwrap_or(NOBODY);
+                    indices[row + i] = i64::try_from(number).unwrap_or(NO_NEIGHBOR);
                     distances[row + i] = distance;
                 }
             }
@@ -125,7 +125,7 @@ impl PatchNeighbors {
         let lists = Lists::new(0, frames, TASK_FRAMES, self.count.min(candidates), Ties::Lower);
         let bounded = poses.complete() && frames >= FEW_FRAMES;
         let mutual = bounded && !library && measure.window() <= LONGEST;
-        let spare: Mutex<Vec<(Loaded<T>, Scratch<T>)>> = Mutex::default();
+        let pool: Mutex<Vec<(Loaded<T>, Scratch<T>)>> = Mutex::default();
         let at = self.patch_radius;
         let mut first = 0;
         for scene in scenes {
@@ -139,7 +139,7 @@ impl PatchNeighbors {
                     let nanoseconds = tasks.len() * TASK_FRAMES * side.count * measure.joints.len();
                     parallel::for_each(tasks.collect(), nanoseconds, |_, task: usize| {
                         interrupt.check()?;
-                        let kept = spare.lock().map_or(None, |mut spare| spare.pop());
+                        let kept = pool.lock().map_or(None, |mut pool| pool.pop());
                         let (mut loaded, mut scratch) = kept.unwrap_or_default();
                         let from = task * TASK_FRAMES;
                         let to = frames.min(from + TASK_FRAMES);
@@ -159,8 +159,8 @@ impl PatchNeighbors {
                             mutual,
                         };
                         let done = work(&join, &mut scratch);
-                        if let Ok(mut spare) = spare.lock() {
-                            spare.push((loaded, scratch));
+                        if let Ok(mut pool) = pool.lock() {
+                            pool.push((loaded, scratch));
                         }
                         done
                     })
@@ -284,7 +284,7 @@ mod tests {
                     let row = count * frame..count * (frame + 1);
                     let found = distances[row.clone()].iter().copied().zip(indices[row].iter().copied());
                     let expected =
-                        nearest.of(frame - first).map(|(d, n)| (d, i64::try_from(n).unwrap_or(NOBODY)));
+                        nearest.of(frame - first).map(|(d, n)| (d, i64::try_from(n).unwrap_or(NO_NEIGHBOR)));
                     assert!(expected.eq(found), "frame {frame} of {frames}");
                 }
             }

@@ -13,7 +13,7 @@ use std::ops::Range;
 
 /// How far a query travels before all is looked at again, in lengths of the longest segment: bounds are sums with the way so far,
 /// and round the more the longer it is.
-const JOURNEY: f64 = 64.0;
+const LONGEST_PATH: f64 = 64.0;
 
 /// An exact search along a motion.
 #[derive(Debug)]
@@ -71,7 +71,7 @@ impl<T: Real> Along<T> {
             let step = index.distance(&made, &self.before).to_f64();
             self.travelled = (self.travelled + step) * (1.0 + 2.0 * f64::EPSILON);
         }
-        if known && self.travelled <= JOURNEY * index.largest().to_f64() {
+        if known && self.travelled <= LONGEST_PATH * index.largest().to_f64() {
             self.offer_those_before(segments, &made, excluded);
             self.look(segments, index, &made);
         } else {
@@ -117,8 +117,8 @@ impl<T: Real> Along<T> {
                 continue;
             }
             index.tile(query, tile, &mut squares);
-            for (place, (bound, square)) in bounds.iter_mut().zip(squares).enumerate() {
-                let block = tile * TILE + place;
+            for (column, (bound, square)) in bounds.iter_mut().zip(squares).enumerate() {
+                let block = tile * TILE + column;
                 let below = T::from_f64(index.below(query, block, square).to_f64() + *travelled);
                 // Of two bounds the higher says more.
                 *bound = if *bound > below { *bound } else { below };

@@ -12,7 +12,7 @@ use crate::{Error, Real};
 use std::ops::Range;
 
 /// What stands for a neighbour that does not exist.
-const NOBODY: i32 = -1;
+const NO_NEIGHBOR: i32 = -1;
 
 /// A graph: the numbers of the neighbours of every pose, nearest first.
 #[derive(Debug, Clone, Copy)]
@@ -76,7 +76,7 @@ pub fn neighbors<T: Real>(
     if i32::try_from(segments.poses()).is_err() {
         return Err(Error::Parameter { name: "features", expected: "at most 2³¹ poses" });
     }
-    indices.fill(NOBODY);
+    indices.fill(NO_NEIGHBOR);
     distances.fill(T::ONE / T::ZERO);
     if degree == 0 {
         return Ok(());

@@ -1,10 +1,10 @@
 //! What tells early that a segment is not among the nearest.
 //!
-//! A *shadow* of a pose are its coordinates along the few directions in which poses differ most: two shadows are never farther
-//! apart than the poses. The *course* of a segment is the mean of the shadows of its poses, times the root of their number: two
-//! courses are never farther apart than the segments, and hardly nearer, since poses in sequence are much alike. Motion is slow
-//! beside the distances between motions, so of each passage of a few segments the course of the middle one is looked at first,
-//! then the shadows of all, then the segments. Nothing is lost.
+//! A *projection* of a pose are its coordinates along the few directions in which poses differ most: two projections are never farther
+//! apart than the poses. The *window* of a segment is the mean of the projections of its poses, times the root of their number: two
+//! windows are never farther apart than the segments, and hardly nearer, since poses in sequence are much alike. Motion is slow
+//! beside the distances between motions, so of each block of a few segments the window of the middle one is looked at first,
+//! then the projections of all, then the segments. Nothing is lost.
 
 use super::kernels::{self, LANES, Probe, TILE};
 use super::principal::directions;
@@ -13,11 +13,11 @@ use crate::parallel::{self, Interrupt};
 use crate::{Error, Real};
 use std::ops::Range;
 
-/// Numbers of a shadow: on motions they hold nine tenths of the variance of poses.
+/// Numbers of a projection: on motions they hold nine tenths of the variance of poses.
 const WIDTH: usize = LANES;
 
-/// Segments of a passage: more of them are farther apart, fewer save less.
-pub(super) const PASSAGE: usize = 8;
+/// Segments of a block: more of them are farther apart, fewer save less.
+pub(super) const BLOCK: usize = 8;
 
 /// Poses that are measured at a time.
 const STRIP: usize = 64;
@@ -25,12 +25,12 @@ const STRIP: usize = 64;
 /// Poses of a task.
 const TASK: usize = 4096;
 
-/// A passage.
+/// A block.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Block<T> {
     first: usize,
     count: usize,
-    /// The largest distance of a course from that of the middle one; infinite where it cannot be told.
+    /// The largest distance of a window from that of the middle one; infinite where it cannot be told.
     radius: T,
 }
 
@@ -46,18 +46,18 @@ impl<T: Real> Block<T> {
     }
 }
 
-/// Shadows of all poses, and passages of all candidates: 76 bytes for each pose in float32.
+/// Shadows of all poses, and blocks of all candidates: 76 bytes for each pose in float32.
 #[derive(Debug, Clone)]
 pub struct Index<T> {
     /// Directions, `(dims, WIDTH)`.
     basis: Vec<T>,
     /// Shadows, `(poses, WIDTH)`.
-    shadows: Vec<T>,
-    /// The passages.
+    projections: Vec<T>,
+    /// The blocks.
     pub(super) blocks: Vec<Block<T>>,
     /// Courses of their middles in tiles: the first numbers of all of a tile, then the second ones.
     middles: Vec<T>,
-    /// How much nearer than their shadows two segments can seem for roundings, for each unit of their lengths.
+    /// How much nearer than their projections two segments can seem for roundings, for each unit of their lengths.
     rounding: T,
     /// The greatest length of a segment.
     largest: T,
@@ -78,18 +78,18 @@ impl<T: Real> Index<T> {
             .map(|i| directions[i % WIDTH * dims + i / WIDTH])
             .map(|x| if x.abs() < tiny { T::ZERO } else { T::from_f64(x) })
             .collect();
-        let mut shadows = vec![T::ZERO; poses * WIDTH];
+        let mut projections = vec![T::ZERO; poses * WIDTH];
         let tasks: Vec<_> =
-            segments.features().chunks(TASK * dims).zip(shadows.chunks_mut(TASK * WIDTH)).collect();
-        let largest = parallel::map(tasks, poses * dims * 2, |_, (rows, shadows)| {
+            segments.features().chunks(TASK * dims).zip(projections.chunks_mut(TASK * WIDTH)).collect();
+        let largest = parallel::map(tasks, poses * dims * 2, |_, (rows, projections)| {
             interrupt.check()?;
-            Ok(shade(&basis, rows, dims, shadows))
+            Ok(project(&basis, rows, dims, projections))
         })?;
         let largest = largest.into_iter().fold(T::ZERO, Real::max) * T::from_f64(length as f64).sqrt();
-        let mut blocks = Vec::with_capacity(poses / PASSAGE + segments.clips().len());
+        let mut blocks = Vec::with_capacity(poses / BLOCK + segments.clips().len());
         for ends in segments.clips() {
-            for first in ends.clone().step_by(PASSAGE) {
-                blocks.push(Block { first, count: PASSAGE.min(ends.end - first), radius: T::ZERO });
+            for first in ends.clone().step_by(BLOCK) {
+                blocks.push(Block { first, count: BLOCK.min(ends.end - first), radius: T::ZERO });
             }
         }
         let mut middles = vec![T::ZERO; blocks.len().next_multiple_of(TILE) * WIDTH];
@@ -97,33 +97,33 @@ impl<T: Real> Index<T> {
         parallel::for_each(tasks, poses * length * 8, |_, (blocks, middles)| {
             interrupt.check()?;
             let mut probe = Probe::new(&[]);
-            let (mut courses, mut squares) = ([T::ZERO; WIDTH * PASSAGE], [T::ZERO; PASSAGE]);
-            for (place, block) in blocks.iter_mut().enumerate() {
-                for (end, course) in block.ends().zip(courses.chunks_exact_mut(WIDTH)) {
-                    write_course(rows(&shadows, length, &(end..end + 1)), course);
+            let (mut windows, mut squares) = ([T::ZERO; WIDTH * BLOCK], [T::ZERO; BLOCK]);
+            for (column, block) in blocks.iter_mut().enumerate() {
+                for (end, window) in block.ends().zip(windows.chunks_exact_mut(WIDTH)) {
+                    write_window(rows(&projections, length, &(end..end + 1)), window);
                 }
                 let middle = block.middle() - block.first;
-                let course = &courses[middle * WIDTH..(middle + 1) * WIDTH];
-                for (number, x) in course.iter().enumerate() {
-                    middles[number * TILE + place] = *x;
+                let window = &windows[middle * WIDTH..(middle + 1) * WIDTH];
+                for (number, x) in window.iter().enumerate() {
+                    middles[number * TILE + column] = *x;
                 }
-                probe.set(course);
+                probe.set(window);
                 let squares = &mut squares[..block.count];
-                kernels::in_sequence(&courses[..block.count * WIDTH], WIDTH, &probe, squares);
+                kernels::in_sequence(&windows[..block.count * WIDTH], WIDTH, &probe, squares);
                 block.radius = radius(squares, squares[middle]);
             }
             Ok(())
         })?;
         let rounding = T::EPSILON * T::from_f64((4 * (dims + WIDTH * length)) as f64);
-        Ok(Self { basis, shadows, blocks, middles, rounding, largest, length })
+        Ok(Self { basis, projections, blocks, middles, rounding, largest, length })
     }
 
-    /// A query, with its shadow.
+    /// A query, with its projection.
     pub(super) fn query(&self, values: &[T], dims: usize, excluded: Range<usize>) -> Query<T> {
         let mut query = Query {
             probe: Probe::new(&[]),
-            shadow: Probe::new(&[]),
-            course: [T::ZERO; WIDTH],
+            projection: Probe::new(&[]),
+            window: [T::ZERO; WIDTH],
             excluded,
             slack: T::ZERO,
         };
@@ -133,11 +133,12 @@ impl<T: Real> Index<T> {
 
     /// Makes it another query.
     pub(super) fn set(&self, query: &mut Query<T>, values: &[T], dims: usize) {
-        let mut shadow = vec![T::ZERO; WIDTH * self.length];
-        let own = shade(&self.basis, values, dims, &mut shadow) * T::from_f64(self.length as f64).sqrt();
+        let mut projection = vec![T::ZERO; WIDTH * self.length];
+        let own =
+            project(&self.basis, values, dims, &mut projection) * T::from_f64(self.length as f64).sqrt();
         query.probe.set(values);
-        query.shadow.set(&shadow);
-        write_course(&shadow, &mut query.course);
+        query.projection.set(&projection);
+        write_window(&projection, &mut query.window);
         query.slack = self.rounding * (self.largest + own) + T::TINY_SQUARE.sqrt();
     }
 
@@ -158,7 +159,7 @@ impl<T: Real> Index<T> {
         squares.resize(room * queries.len(), T::ZERO);
         for (tile, middles) in self.middles.chunks_exact(TILE * WIDTH).enumerate() {
             for (query, squares) in queries.iter().zip(squares.chunks_exact_mut(room)) {
-                kernels::tile(middles, &query.course, &mut squares[tile * TILE..(tile + 1) * TILE]);
+                kernels::tile(middles, &query.window, &mut squares[tile * TILE..(tile + 1) * TILE]);
             }
         }
         if room > 0 {
@@ -168,13 +169,13 @@ impl<T: Real> Index<T> {
         }
     }
 
-    /// Offers the candidates nearest to a query, given the squared distances of its course from those of the passages' middles.
+    /// Offers the candidates nearest to a query, given the squared distances of its window from those of the blocks' middles.
     fn look(&self, segments: &Segments<'_, T>, query: &Query<T>, squares: &[T], best: &mut Best<T>) {
         if !query.probe.is_finite() {
             return;
         }
         // Those whose middles are nearest, to know early how near the nearest are.
-        let mut first = Best::new(2 * (best.count() / PASSAGE + 2));
+        let mut first = Best::new(2 * (best.count() / BLOCK + 2));
         for (block, square) in squares.iter().enumerate() {
             first.offer(*square, block);
         }
@@ -194,7 +195,7 @@ impl<T: Real> Index<T> {
         }
     }
 
-    /// Offers the segments of a passage, and says what none of them is nearer than.
+    /// Offers the segments of a block, and says what none of them is nearer than.
     pub(super) fn measure(
         &self,
         segments: &Segments<'_, T>,
@@ -203,18 +204,18 @@ impl<T: Real> Index<T> {
         best: &mut Best<T>,
     ) -> T {
         let ends = self.blocks[block].ends();
-        let mut squares = [T::ZERO; PASSAGE];
+        let mut squares = [T::ZERO; BLOCK];
         kernels::in_sequence(
-            rows(&self.shadows, self.length, &ends),
+            rows(&self.projections, self.length, &ends),
             WIDTH,
-            &query.shadow,
+            &query.projection,
             &mut squares[..ends.len()],
         );
         let far = query.far(best, self.rounding);
-        let (mut shadow, mut least) = (T::ONE / T::ZERO, T::ONE / T::ZERO);
+        let (mut projection, mut least) = (T::ONE / T::ZERO, T::ONE / T::ZERO);
         for (end, square) in ends.zip(squares) {
             if square > far * far || query.excluded.contains(&end) {
-                shadow = if square < shadow { square } else { shadow };
+                projection = if square < projection { square } else { projection };
                 continue;
             }
             let exact = query.square(segments.at(end));
@@ -222,7 +223,7 @@ impl<T: Real> Index<T> {
             best.offer(exact, end);
         }
         let above = T::ONE + self.rounding;
-        (shadow.sqrt() / above - query.slack).min(least.sqrt() / above)
+        (projection.sqrt() / above - query.slack).min(least.sqrt() / above)
     }
 
     /// What two queries are not farther apart than.
@@ -230,13 +231,13 @@ impl<T: Real> Index<T> {
         query.square(other).sqrt() * (T::ONE + self.rounding) + T::TINY_SQUARE.sqrt()
     }
 
-    /// The squared distances of the courses of the middles of a tile of passages to that of a query.
+    /// The squared distances of the windows of the middles of a tile of blocks to that of a query.
     pub(super) fn tile(&self, query: &Query<T>, tile: usize, squares: &mut [T; TILE]) {
         let at = tile * TILE * WIDTH;
-        kernels::tile(&self.middles[at..at + TILE * WIDTH], &query.course, squares);
+        kernels::tile(&self.middles[at..at + TILE * WIDTH], &query.window, squares);
     }
 
-    /// What no segment of a passage is nearer than to a query, given the squared distance of the course of its middle; no number
+    /// What no segment of a block is nearer than to a query, given the squared distance of the window of its middle; no number
     /// where nothing is known.
     pub(super) fn below(&self, query: &Query<T>, block: usize, square: T) -> T {
         let above = T::ONE + self.rounding;
@@ -254,12 +255,12 @@ impl<T: Real> Index<T> {
     }
 }
 
-/// A query, with its shadow.
+/// A query, with its projection.
 #[derive(Debug, Clone)]
 pub(super) struct Query<T> {
     probe: Probe<T>,
-    shadow: Probe<T>,
-    course: [T; WIDTH],
+    projection: Probe<T>,
+    window: [T; WIDTH],
     pub(super) excluded: Range<usize>,
     slack: T,
 }
@@ -277,42 +278,42 @@ impl<T: Real> Query<T> {
         square[0]
     }
 
-    /// The distance of shadows from which on no segment is among the best.
+    /// The distance of projections from which on no segment is among the best.
     fn far(&self, best: &Best<T>, rounding: T) -> T {
         let above = T::ONE + rounding;
         best.limit().map_or(T::ONE / T::ZERO, |limit| (limit.sqrt() * above + self.slack) * above)
     }
 }
 
-/// The shadows of the poses of candidates in sequence.
-fn rows<'a, T: Real>(shadows: &'a [T], length: usize, ends: &Range<usize>) -> &'a [T] {
-    &shadows[(ends.start + 1 - length) * WIDTH..ends.end * WIDTH]
+/// The projections of the poses of candidates in sequence.
+fn rows<'a, T: Real>(projections: &'a [T], length: usize, ends: &Range<usize>) -> &'a [T] {
+    &projections[(ends.start + 1 - length) * WIDTH..ends.end * WIDTH]
 }
 
-/// Writes the course of a segment, given the shadows of its poses.
-fn write_course<T: Real>(shadows: &[T], course: &mut [T]) {
-    let share = T::from_f64((WIDTH as f64 / shadows.len() as f64).sqrt());
-    course.fill(T::ZERO);
-    for shadow in shadows.chunks_exact(WIDTH) {
-        for (sum, x) in course.iter_mut().zip(shadow) {
+/// Writes the window of a segment, given the projections of its poses.
+fn write_window<T: Real>(projections: &[T], window: &mut [T]) {
+    let share = T::from_f64((WIDTH as f64 / projections.len() as f64).sqrt());
+    window.fill(T::ZERO);
+    for projection in projections.chunks_exact(WIDTH) {
+        for (sum, x) in window.iter_mut().zip(projection) {
             *sum += *x;
         }
     }
-    for sum in course {
+    for sum in window {
         *sum *= share;
     }
 }
 
-/// Writes the shadows of poses, and says how long the longest pose is.
-fn shade<T: Real>(basis: &[T], poses: &[T], dims: usize, shadows: &mut [T]) -> T {
+/// Writes the projections of poses, and says how long the longest pose is.
+fn project<T: Real>(basis: &[T], poses: &[T], dims: usize, projections: &mut [T]) -> T {
     let origin = Probe::new(&vec![T::ZERO; dims]);
     let mut squares = [T::ZERO; STRIP];
     let mut largest = T::ZERO;
-    for (poses, shadows) in poses.chunks(STRIP * dims).zip(shadows.chunks_mut(STRIP * WIDTH)) {
+    for (poses, projections) in poses.chunks(STRIP * dims).zip(projections.chunks_mut(STRIP * WIDTH)) {
         let squares = &mut squares[..poses.len() / dims];
         // First what reads the poses one after the other: memory is slower with those that read several side by side.
         kernels::in_sequence(poses, dims, &origin, squares);
-        kernels::products(basis, poses, shadows);
+        kernels::products(basis, poses, projections);
         for &square in &*squares {
             largest = if square > largest { square } else { largest };
         }

@@ -187,9 +187,9 @@ multiversion! {
     pub(super) fn products<T: Real>(basis: &[T], poses: &[T], out: &mut [T]) {
         let dims = basis.len() / LANES;
         let basis = basis.as_chunks::<LANES>().0;
-        let (shadows, rest) = out.as_chunks_mut::<LANES>();
+        let (projections, rest) = out.as_chunks_mut::<LANES>();
         debug_assert!(rest.is_empty());
-        let whole = shadows.len() / POSES * POSES;
+        let whole = projections.len() / POSES * POSES;
         let mut i = 0;
         while i < whole {
             let mut sums = [[T::ZERO; LANES]; POSES];
@@ -199,15 +199,15 @@ multiversion! {
                     sums[row] = grow(sums[row], &basis[j], rows[row][j]);
                 }
             }
-            shadows[i..i + POSES].copy_from_slice(&sums);
+            projections[i..i + POSES].copy_from_slice(&sums);
             i += POSES;
         }
-        while i < shadows.len() {
+        while i < projections.len() {
             let mut sums = [T::ZERO; LANES];
             for j in 0..dims {
                 sums = grow(sums, &basis[j], poses[i * dims + j]);
             }
-            shadows[i] = sums;
+            projections[i] = sums;
             i += 1;
         }
     }

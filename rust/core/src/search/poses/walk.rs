@@ -15,7 +15,7 @@ use std::ops::Range;
 
 /// When the results of a walk are not enough.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Trust {
+pub struct Fallback {
     /// Frames after a full search until the next; 0: each frame has one.
     pub frames: usize,
     /// How many times as far as it was at best since the last full search the last of the nearest segments may be.
@@ -38,7 +38,7 @@ pub struct Database<'a, T> {
 pub struct Walk<T> {
     /// How many are sought.
     count: usize,
-    trust: Trust,
+    fallback: Fallback,
     /// As many as are gone out from.
     best: Best<T>,
     probe: Probe<T>,
@@ -62,10 +62,10 @@ impl<T: Real> Walk<T> {
     /// A search for the `count` nearest segments in each frame, which goes out from the `breadth` nearest that it knows, at least
     /// `count`.
     #[must_use]
-    pub fn new(count: usize, breadth: usize, trust: Trust) -> Self {
+    pub fn new(count: usize, breadth: usize, fallback: Fallback) -> Self {
         Self {
             count,
-            trust,
+            fallback,
             best: Best::new(breadth.max(count)),
             probe: Probe::new(&[]),
             before: Vec::new(),
@@ -105,27 +105,27 @@ impl<T: Real> Walk<T> {
             self.since = None;
             return Ok((&self.best, false));
         }
-        let walked = self.since.is_some_and(|since| since < self.trust.frames);
+        let walked = self.since.is_some_and(|since| since < self.fallback.frames);
         if walked {
             self.go(database, excluded);
         }
-        let ratio = T::from_f64(self.trust.ratio);
-        let trusted = walked
+        let ratio = T::from_f64(self.fallback.ratio);
+        let kept = walked
             && self
                 .last()
                 .is_some_and(|square| !ratio.is_finite() || square.sqrt() <= self.least.sqrt() * ratio);
-        if !trusted {
+        if !kept {
             let made = index.query(query, segments.dims(), excluded.clone());
             let bests = std::slice::from_mut(&mut self.best);
             index.search(segments, &[made], bests, &mut self.squares);
         }
         if let Some(square) = self.last() {
-            self.least = if trusted { self.least.min(square) } else { square };
+            self.least = if kept { self.least.min(square) } else { square };
         }
-        self.since = Some(if trusted { self.since.map_or(0, |since| since + 1) } else { 0 });
+        self.since = Some(if kept { self.since.map_or(0, |since| since + 1) } else { 0 });
         self.before.clear();
         self.before.extend(self.best.found().iter().map(|found| found.1));
-        Ok((&self.best, !trusted))
+        Ok((&self.best, !kept))
     }
 
     /// The squared distance of the last of those that are sought.
