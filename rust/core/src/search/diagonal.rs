@@ -1,30 +1,31 @@
-//! Distances of the patches of one diagonal.
+//! Distances between the patches along one diagonal.
 
 use super::features::{Features, Joint, Kind};
 use super::kernels::{self, LANES};
 use crate::Real;
 use std::ops::Range;
 
-/// What a patch is and how two are compared: by `√(Σ factor·square / Σ unit)` over offsets and joints, each term as far as
-/// both samples count.
+/// The patch distance: `√(Σ factor·square / Σ unit)` over offsets and joints. Each term is weighted with the product
+/// of both samples' weights.
 #[derive(Debug)]
 pub(crate) struct Measure<T> {
-    /// Frames of a patch before its middle.
+    /// Frames of a patch before its centre.
     pub(crate) before: usize,
-    /// Frames of a patch after its middle.
+    /// Frames of a patch after its centre.
     pub(crate) after: usize,
     /// The joints that are compared.
     pub(crate) joints: Range<usize>,
-    /// What a squared difference counts, per joint.
+    /// Weight of a squared difference, per joint.
     pub(crate) factors: Vec<T>,
-    /// What a pair of samples counts in the divisor, per joint.
+    /// Weight of a pair of samples in the divisor, per joint.
     pub(crate) units: Vec<T>,
     /// Whether there is a divisor.
     pub(crate) averaged: bool,
 }
 
 impl<T: Real> Measure<T> {
-    /// The same measure where vectors are half rotation vectors, whose squares are a quarter of the rotations'.
+    /// The same measure for vectors that are half rotation vectors: their squares are a quarter of the squared
+    /// angles.
     pub(crate) fn halved(mut self, joints: &[Joint]) -> Self {
         for (factor, joint) in self.factors.iter_mut().zip(joints) {
             if joint.kind == Kind::Vector {
@@ -34,12 +35,12 @@ impl<T: Real> Measure<T> {
         self
     }
 
-    /// Frames of a patch.
+    /// Patch length in frames.
     pub(crate) fn window(&self) -> usize {
         self.before + self.after + 1
     }
 
-    /// The divisor of complete patches.
+    /// The divisor for patches without missing samples.
     pub(crate) fn divisor(&self) -> f64 {
         if !self.averaged {
             return 1.0;
@@ -49,7 +50,7 @@ impl<T: Real> Measure<T> {
     }
 }
 
-/// Memory that goes from diagonal to diagonal.
+/// Scratch memory, reused from diagonal to diagonal.
 #[derive(Debug, Default)]
 pub(crate) struct Diagonal<T> {
     squares: Vec<T>,
@@ -59,10 +60,11 @@ pub(crate) struct Diagonal<T> {
 }
 
 impl<T: Real> Diagonal<T> {
-    /// Distances of the patches whose middles stand at the columns `at[0] + i` of `a` and `at[1] + i` of `b`, into `out`;
-    /// infinite where no two samples can be compared. Planes must hold [`LANES`] columns more than the patches.
+    /// Distances of the patches centred on the columns `at[0] + i` of `a` and `at[1] + i` of `b`, into `out`. They
+    /// are infinite where no pair of samples can be compared. Planes must hold [`LANES`] columns more than the
+    /// patches.
     ///
-    /// A distance depends on its two patches alone, to the last bit, and not on which of them is `a`.
+    /// A distance depends on its two patches only, to the last bit, and is symmetric in `a` and `b`.
     pub(crate) fn measure(
         &mut self,
         measure: &Measure<T>,

@@ -1,4 +1,4 @@
-//! Patches as points: the means of their frames, of a few patches in sequence at once.
+//! Patches as points: the mean of a patch's frames, and the means of blocks of consecutive patches.
 
 use super::axes::{Axes, GROUP};
 use super::kernels::{self, LANES};
@@ -11,60 +11,60 @@ use crate::search::kernels::sliding_sums;
 use crate::search::poses::{Segments, directions};
 use crate::{Error, Real};
 
-/// Coordinates along which blocks differ most.
+/// Number of directions of projection.
 pub(super) const WIDTH: usize = 16;
 
-/// Points of candidates.
+/// The candidates as points.
 #[derive(Debug)]
 pub(super) struct Points<T> {
     pub(super) axes: Axes<T>,
-    /// Numbers of a point: as many as axes, and zeros up to whole vectors.
+    /// Length of a point: the number of coordinates, padded with zeros to whole vectors.
     pub(super) dims: usize,
-    /// Directions, `(WIDTH, dims)`.
+    /// Directions of projection, `(WIDTH, dims)`.
     pub(super) basis: Vec<T>,
-    /// Blocks along the directions.
+    /// Blocks, projected on the directions.
     pub(super) projections: Stage<T>,
     /// Blocks.
     pub(super) blocks: Stage<T>,
     /// Points, `(candidates, dims)`.
     pub(super) rows: Vec<T>,
-    /// Half the squares of the points' lengths.
+    /// Half the squared lengths of the points.
     pub(super) halves: Vec<T>,
 }
 
-/// What is made of a few patches in sequence; planes of all of them or of all blocks, one after the other.
+/// Points, blocks and projections of consecutive patches, as planes: one plane per coordinate.
 #[derive(Debug, Default)]
 pub(super) struct Summary<T> {
     count: usize,
-    /// Numbers of a point.
+    /// Length of a point.
     dims: usize,
     points: Vec<T>,
     blocks: Vec<T>,
     projections: Vec<T>,
-    /// The squares of the lengths of the points, the blocks and their projections.
+    /// The squared lengths of the points, the blocks and the projections.
     pub(super) squares: [Vec<T>; 3],
-    /// Of each block, the distance of the farthest point.
+    /// For each block, the distance of its farthest point from its mean.
     pub(super) radii: Vec<T>,
-    /// The length of the longest vector of a frame, times the root of the window.
+    /// The length of the longest frame vector, times the square root of the patch length in frames.
     pub(super) longest: T,
     planes: Vec<T>,
     values: Vec<T>,
     scratch: Vec<T>,
 }
 
-/// The planes of a group.
+/// The [`GROUP`] planes from `first` on.
 fn group<T>(planes: &[T], first: usize, length: usize) -> [&[T]; GROUP] {
     [0, 1, 2, 3].map(|i| &planes[(first + i) * length..(first + i + 1) * length])
 }
 
-/// Zeros, as many as are asked for.
+/// Resizes to `length` zeros.
 fn clear<T: Real>(numbers: &mut Vec<T>, length: usize) {
     numbers.clear();
     numbers.resize(length, T::ZERO);
 }
 
 impl<T: Real> Summary<T> {
-    /// Reads `count` patches from the one in the column `at`.
+    /// Reads `count` patches, from the one centred on the column `at`.
     pub(super) fn read(
         &mut self,
         axes: &Axes<T>,
@@ -92,6 +92,8 @@ impl<T: Real> Summary<T> {
             return;
         }
         let mut lengths = vec![T::ZERO; length];
+        // A point is the sum over the patch divided by √window. By Cauchy–Schwarz, point distances are at most patch
+        // distances.
         let share = T::from_f64(1.0 / (window as f64).sqrt());
         axes.each_group(features, start..start + length, planes, |axis, group| {
             kernels::add_squares(&mut lengths, group);
@@ -106,12 +108,14 @@ impl<T: Real> Summary<T> {
         });
         let longest = lengths.iter().fold(T::ZERO, |most, square| most.max(*square));
         self.longest = (longest * T::from_f64(window as f64)).sqrt();
+        // A block is the mean of its points.
         for (plane, means) in points.chunks_exact(count).zip(blocks.chunks_exact_mut(several)) {
             for (mean, members) in means.iter_mut().zip(plane.chunks(BLOCK)) {
                 let sum = members.iter().fold(T::ZERO, |sum, x| sum + *x);
                 *mean = sum * T::from_f64(1.0 / members.len() as f64);
             }
         }
+        // The radius of a block is the distance of its farthest point from that mean.
         let mut apart = vec![T::ZERO; count];
         for (plane, means) in points.chunks_exact(count).zip(blocks.chunks_exact(several)) {
             for ((members, mean), apart) in plane.chunks(BLOCK).zip(means).zip(apart.chunks_mut(BLOCK)) {
@@ -152,7 +156,7 @@ impl<T: Real> Summary<T> {
         write(&self.projections, self.radii.len(), rows);
     }
 
-    /// Runs `work(first, planes)` for each group of numbers of the blocks.
+    /// Runs `work(first, planes)` for each group of coordinates of the blocks or of their projections.
     fn each_group(&self, projections: bool, mut work: impl FnMut(usize, [&[T]; GROUP])) {
         let (planes, dims) = if projections { (&self.projections, WIDTH) } else { (&self.blocks, self.dims) };
         for first in (0..dims).step_by(GROUP) {
@@ -161,7 +165,7 @@ impl<T: Real> Summary<T> {
     }
 }
 
-/// Turns planes of a length into rows.
+/// Transposes planes of `length` elements into rows.
 fn write<T: Real>(planes: &[T], length: usize, rows: &mut [T]) {
     if length == 0 {
         return;
@@ -175,7 +179,7 @@ fn write<T: Real>(planes: &[T], length: usize, rows: &mut [T]) {
 }
 
 impl<T: Real> Points<T> {
-    /// Reads the candidates of a side; directions are learnt from a sample of their columns.
+    /// Reads the candidates of a side; the directions come from a sample of their columns.
     pub(super) fn new(
         axes: Axes<T>,
         sample: &[usize],

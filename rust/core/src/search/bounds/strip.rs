@@ -1,4 +1,4 @@
-//! The numbers of a few frames in sequence, which are compared with all candidates.
+//! Coordinates of a few consecutive frames, compared with all candidates.
 
 use super::axes::GROUP;
 use super::kernels::{self, Columns, LANES, Row, TALL};
@@ -11,10 +11,11 @@ use crate::search::features::Side;
 use crate::search::kernels::sums_along;
 use std::ops::Range;
 
-/// Of so many pairs of a tile's part one has to be near for the chords of all to be looked at.
+/// The chord bound is evaluated for a whole part of a tile if at least one in `DENSE` of its pairs of blocks survives
+/// the point bound.
 const DENSE: usize = 8;
 
-/// Numbers row by row.
+/// Coordinates row by row, and their bound data.
 #[derive(Debug, Default)]
 struct Rows<T> {
     numbers: Vec<T>,
@@ -45,7 +46,7 @@ impl<T: Real> Rows<T> {
     }
 }
 
-/// Limits of the candidates of a tile.
+/// Limits of the candidates of a tile, one array per bound.
 #[derive(Debug, Default)]
 struct Limits<T> {
     chords: Vec<T>,
@@ -53,7 +54,7 @@ struct Limits<T> {
     points: Vec<T>,
 }
 
-/// At most [`ROWS`](super::ROWS) frames, and memory for their comparison with a tile.
+/// At most [`ROWS`](super::ROWS) frames, and scratch memory for comparing them with a tile.
 #[derive(Debug, Default)]
 pub(crate) struct Strip<T> {
     frames: usize,
@@ -108,7 +109,7 @@ impl<T: Real> Strip<T> {
         }
     }
 
-    /// Takes on how far the farthest neighbours are that are known.
+    /// Sets the frames' limits: the distance of each frame's farthest neighbour found so far.
     pub(crate) fn limit(&mut self, bounds: &Bounds<T>, limits: &[T]) {
         if let Some((_, stage)) = &bounds.chords {
             let limits = limits.iter().map(|limit| stage.reach(*limit, T::ZERO));
@@ -127,7 +128,7 @@ impl<T: Real> Strip<T> {
         }
     }
 
-    /// Takes on how far those of the candidates of a tile are; 0 where candidates look for none.
+    /// Sets the limits of the candidates of a tile; 0 where a candidate needs no neighbours.
     pub(crate) fn limit_others(&mut self, bounds: &Bounds<T>, limits: &[T; COLUMNS]) {
         let Limits { chords, blocks, points } = &mut self.others;
         if let Some((_, stage)) = &bounds.chords {
@@ -143,7 +144,7 @@ impl<T: Real> Strip<T> {
         }
     }
 
-    /// Runs `work(frame, candidate)` for the pairs of the strip with a tile of candidates that may be near enough.
+    /// Runs `work(frame, candidate)` for the pairs of the strip with a tile of candidates that survive the bounds.
     pub(crate) fn sift(&mut self, bounds: &Bounds<T>, tile: usize, mut work: impl FnMut(usize, usize)) {
         let first = tile * COLUMNS;
         let (mut rows, mut columns) = (0..self.frames, first..first + COLUMNS);
@@ -163,7 +164,8 @@ impl<T: Real> Strip<T> {
         }
     }
 
-    /// The blocks of a tile between which all pairs lie whose projections are near enough.
+    /// The smallest range of block rows and columns of a tile that contains all pairs whose projections are near
+    /// enough.
     fn part(&mut self, stage: &Stage<T>, tile: usize) -> Option<(Range<usize>, Range<usize>)> {
         let width = COLUMNS / BLOCK;
         let Self { projections, products, marks, others, .. } = self;
@@ -179,11 +181,11 @@ impl<T: Real> Strip<T> {
         let within = &products[rows.start * width..rows.end * width];
         kernels::mark_panels(marks, within, &projections.known[rows.clone()], columns);
         let panels = marked(marks)?;
-        // Whole tiles of rows.
+        // Round down to whole tiles of rows.
         Some((rows.start / TALL * TALL..rows.end, first + panels.start * LANES..first + panels.end * LANES))
     }
 
-    /// Finds the blocks that are near enough.
+    /// Finds the pairs of blocks that survive the point bound.
     fn near_blocks(&mut self, stage: &Stage<T>, tile: usize, (rows, columns): &(Range<usize>, Range<usize>)) {
         let Self { blocks, products, marks, near, others, .. } = self;
         let (tall, width) = (rows.len().next_multiple_of(TALL), columns.len());
@@ -202,7 +204,7 @@ impl<T: Real> Strip<T> {
         }
     }
 
-    /// Of the blocks that are near enough, the points that are.
+    /// Evaluates the point bound for each pair of patches in the pairs of blocks found.
     fn near_points(&self, points: &Points<T>, first: usize, mut work: impl FnMut(usize, usize)) {
         let dims = points.dims;
         let own = &self.points;
@@ -226,7 +228,7 @@ impl<T: Real> Strip<T> {
         }
     }
 
-    /// The pairs of some rows and columns whose chords are near enough.
+    /// Evaluates the chord bound for all pairs of the given rows and columns.
     fn near_chords(
         &mut self,
         stage: &Stage<T>,
@@ -259,20 +261,20 @@ fn farthest<T: Real>(limits: &[T]) -> T {
     limits.iter().fold(T::ZERO, |most, limit| most.max(*limit))
 }
 
-/// What is known of some candidates, whose limits are the first of those given.
+/// Bound data of a range of candidates; `limits` starts at the first of them.
 fn known<'a, T: Real>(stage: &'a Stage<T>, columns: Range<usize>, limits: &'a [T]) -> Columns<'a, T> {
     let limits = &limits[..columns.len()];
     Columns { halves: &stage.halves[columns.clone()], limits, radii: &stage.radii[columns] }
 }
 
-/// From the first mark to the last.
+/// The range from the first mark to the last.
 fn marked(marks: &[u8]) -> Option<Range<usize>> {
     let first = marks.iter().position(|mark| *mark != 0)?;
     let last = marks.iter().rposition(|mark| *mark != 0)?;
     Some(first..last + 1)
 }
 
-/// Runs `work(place)` for each mark, of which there are few; marks come in whole vectors.
+/// Runs `work(index)` for each mark. Marks are sparse, and their number is a multiple of [`LANES`].
 fn each_mark(marks: &[u8], mut work: impl FnMut(usize)) {
     for (group, near) in marks.as_chunks::<LANES>().0.iter().enumerate() {
         if u128::from_ne_bytes(*near) == 0 {
