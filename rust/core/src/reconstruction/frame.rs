@@ -15,7 +15,7 @@ pub fn heading(q: [f64; 4], up: usize) -> f64 {
 
 /// Quaternion of a turn about the axis `up` by an angle in radians.
 #[must_use]
-pub fn turn(angle: f64, up: usize) -> [f64; 4] {
+pub fn rotation_about(angle: f64, up: usize) -> [f64; 4] {
     let (sine, cosine) = Real::sin_cos(0.5 * (angle % (2.0 * TAU)));
     let mut q = [cosine, 0.0, 0.0, 0.0];
     q[1 + up] = sine;
@@ -24,7 +24,7 @@ pub fn turn(angle: f64, up: usize) -> [f64; 4] {
 
 /// A step along the two level axes of a frame of this heading, as the world sees it.
 #[must_use]
-pub fn turned(step: [f64; 2], angle: f64, up: usize) -> [f64; 3] {
+pub fn rotated(step: [f64; 2], angle: f64, up: usize) -> [f64; 3] {
     let [first, second] = HORIZONTAL[up];
     let (sine, cosine) = Real::sin_cos(angle % TAU);
     let mut result = [0.0; 3];

@@ -34,7 +34,7 @@ impl Residuals {
 
     /// Deviation at the query.
     ///
-    /// A ridge regression is the mean of a Gaussian process with a linear covariance and noise of variance `s λ`. Seen from the
+    /// A ridge regression is the mean of a Gaussian process with a linear covariance and noise of variance `s λ`. Observation from the
     /// others, example k has the variance `s / A_kk`, and the query `s (λ + x²)`, where x is what the examples do not show of
     /// it. The scale `s` of each output is what makes the first fit the residuals: `s = Σ r² A_kk / Σ ω`.
     fn predictive(&self, examples: &Examples, ridge: &Ridge) -> Vec<f64> {

@@ -28,7 +28,7 @@ pub(super) struct Examples {
     /// `G`: inner products of the inputs.
     pub(super) gram: Matrix,
     /// Inner products of the inputs with the query, padded, and the square of the query's length.
-    pub(super) shadow: Vec<f64>,
+    pub(super) query_products: Vec<f64>,
     square: f64,
     /// `λ`.
     pub(super) ridge: f64,
@@ -79,18 +79,18 @@ impl Examples {
             *x -= mean;
         }
         let mut gram = inputs.gram();
-        let mut shadow = vec![0.0; width];
-        add_multiples(inputs.data(), &query, &mut shadow);
+        let mut query_products = vec![0.0; width];
+        add_multiples(inputs.data(), &query, &mut query_products);
         let variance = gram.diagonal().iter().sum::<f64>() / count as f64;
         let equal = variance < LEAST_SQUARE;
         if equal {
             gram.data_mut().fill(0.0);
-            shadow.fill(0.0);
+            query_products.fill(0.0);
         }
         // Of equal examples any ridge will do: 1 leaves no roundings.
         let ridge = if equal { 1.0 } else { options.ridge * variance };
         let square = query.iter().map(|x| x * x).sum();
-        Self { weights, roots, total, nearest, outputs, output_mean, gram, shadow, square, ridge }
+        Self { weights, roots, total, nearest, outputs, output_mean, gram, query_products, square, ridge }
     }
 
     /// How many.
@@ -109,9 +109,9 @@ impl Examples {
         inverse.add_to_diagonal(self.ridge);
         inverse.invert(interrupt)?;
         let diagonal = inverse.diagonal();
-        let mut solution = vec![0.0; self.shadow.len()];
-        add_multiples(inverse.data(), &self.shadow[..self.count()], &mut solution);
-        let seen = inner(&self.shadow, &solution);
+        let mut solution = vec![0.0; self.query_products.len()];
+        add_multiples(inverse.data(), &self.query_products[..self.count()], &mut solution);
+        let seen = inner(&self.query_products, &solution);
         let unseen = self.ridge + (self.square - seen).max(0.0);
         Ok(Ridge { inverse, diagonal, unseen })
     }

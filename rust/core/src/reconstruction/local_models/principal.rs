@@ -32,7 +32,7 @@ pub(super) fn regression(examples: &Examples, share: f64, interrupt: &Interrupt)
     let mut projection = Matrix::new(count, count);
     let mut solution = vec![0.0; projection.width()];
     for (vector, value) in found.vectors.rows().zip(&found.values).take(kept) {
-        let along = inner(vector, &examples.shadow) / value;
+        let along = inner(vector, &examples.query_products) / value;
         for (x, v) in solution.iter_mut().zip(vector) {
             *x += along * v;
         }

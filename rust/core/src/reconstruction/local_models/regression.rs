@@ -57,7 +57,7 @@ pub(super) fn regression(examples: &Examples, ridge: &Ridge, least_squares: bool
     for ((((y, along), dual), twice), before) in rows.zip(&examples.output_mean) {
         let rows = Rows { y, along, change: dual };
         let factor = leave_one_out(&rows, &shared, twice);
-        mean.push(before + factor * inner(&examples.shadow, dual));
+        mean.push(before + factor * inner(&examples.query_products, dual));
     }
     Fit { mean, residuals: Residuals(residuals) }
 }

@@ -2,7 +2,9 @@
 
 use crate::Error;
 use crate::error::check_length;
-use crate::reconstruction::kinematics::{Base, Body, Points, matrix, times, transposed, turning_inverse};
+use crate::reconstruction::kinematics::{
+    Base, Body, Points, matrix, right_jacobian_inverse, times, transposed,
+};
 use crate::rotations::quaternion::{between, log_short, of_row};
 
 /// Where control points are seen.
@@ -67,7 +69,7 @@ impl Errors {
             let Some(block) = blocks.next() else { return };
             let deviation = targets.position_deviations[point];
             let (place, _) = self.points.at(body, point);
-            self.points.moving_rows(body, base, point, block);
+            self.points.position_rows(body, base, point, block);
             for (&is, &should) in place.iter().zip(&targets.positions[3 * point..]) {
                 self.values.push((is - should) / deviation);
             }
@@ -79,10 +81,10 @@ impl Errors {
             let Some(block) = blocks.next() else { return };
             let deviation = targets.orientation_deviations[point];
             let (_, turn) = self.points.at(body, point);
-            self.points.turning_rows(body, point, block);
+            self.points.rotation_rows(body, point, block);
             let vector =
                 log_short(between(of_row(&targets.orientations[4 * point..]), turn)).map(|v| 2.0 * v);
-            let inward = times(&turning_inverse(vector), &transposed(&matrix(turn)));
+            let inward = times(&right_jacobian_inverse(vector), &transposed(&matrix(turn)));
             self.values.extend(vector.map(|v| v / deviation));
             for column in 0..columns {
                 let spin = [block[column], block[columns + column], block[2 * columns + column]];

@@ -19,7 +19,7 @@ impl Lattice {
             return Err(Error::Parameter { name: "poses", expected: "at most 2³² poses" });
         }
         let of_clip = |clip: std::ops::Range<usize>| clip.step_by(stride);
-        let members = poses.old_enough(before).flat_map(of_clip);
+        let members = poses.with_history(before).flat_map(of_clip);
         let mut lattice = Self { poses: Vec::new(), members: vec![0; poses.count().div_ceil(64)], stride };
         for pose in members {
             lattice.members[pose / 64] |= 1 << (pose % 64);

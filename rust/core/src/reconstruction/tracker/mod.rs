@@ -1,21 +1,21 @@
 //! A motion that follows control points, frame by frame.
 
 mod lattice;
+mod observations;
 mod poses;
 mod recent;
 mod search;
-mod sight;
+mod shrink;
 mod signals;
 mod tables;
-mod trails;
+mod trajectories;
 mod walk;
-mod within;
 
 pub use poses::Poses;
 pub use tables::Tables;
 
-use super::frame::{HORIZONTAL, heading, turn, turned};
-use super::kinematics::{Base, Body, WAY};
+use super::frame::{HORIZONTAL, heading, rotated, rotation_about};
+use super::kinematics::{Base, Body, ROOT};
 use super::local_models::{self, Neighbors, predict_pose};
 use super::solver::{Prior, Solver, Targets};
 use crate::Error;
@@ -24,16 +24,16 @@ use crate::parallel::Interrupt;
 use crate::rotations::quaternion::{between, log_short, of_row, product};
 use crate::search::poses::walk::Fallback;
 use lattice::Lattice;
+use observations::Observations;
 use recent::Recent;
 use search::{Example, Query};
-use sight::Sight;
+use shrink::shrunk;
 use signals::Signals;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use tables::Shape;
-use trails::Trails;
+use trajectories::Trajectories;
 use walk::Walk;
-use within::within;
 
 /// How a motion is reconstructed.
 #[derive(Debug, Clone)]
@@ -56,7 +56,7 @@ pub struct Options {
     /// How examples predict.
     pub model: local_models::Options,
     /// Standard deviations of what models do not see: of a joint's coordinate in radians, and of the root's way.
-    pub floor: [f64; 1 + WAY],
+    pub floor: [f64; 1 + ROOT],
     /// The most steps of the solver per frame.
     pub steps: usize,
     /// With a graph: when all examples are looked at nevertheless.
@@ -95,7 +95,7 @@ pub struct Tracker {
     past: VecDeque<(Vec<f64>, Vec<f64>)>,
     /// Frames since a control point was seen.
     blind: usize,
-    sight: Sight,
+    observations: Observations,
     /// What does not depend on the frame.
     tables: Arc<Tables>,
     walk: Walk,
@@ -127,7 +127,7 @@ impl Tracker {
             state,
             past: VecDeque::new(),
             blind: 0,
-            sight: Sight::default(),
+            observations: Observations::default(),
             tables,
             walk: Walk::default(),
             bits: Vec::new(),
@@ -160,15 +160,15 @@ impl Tracker {
             .map(|&deviation| if deviation.is_finite() { 1.0 / (deviation * deviation) } else { 0.0 })
             .collect();
         let missing = weights.iter().all(|&weight| weight == 0.0);
-        self.sight.clear();
-        for (place, &lag) in self.options.window.iter().enumerate() {
+        self.observations.clear();
+        for (slot, &lag) in self.options.window.iter().enumerate() {
             if lag == 0 {
-                self.sight.add((place, 0), seen.positions, &weights, up);
+                self.observations.add((slot, 0), seen.positions, &weights, up);
             } else if let Some((positions, weights)) = self.past.get(lag - 1) {
-                self.sight.add((place, lag), positions, weights, up);
+                self.observations.add((slot, lag), positions, weights, up);
             }
         }
-        self.sight.finish();
+        self.observations.finish();
         let tables = Arc::clone(&self.tables);
         let shape = Shape {
             before: self.before(),
@@ -191,7 +191,7 @@ impl Tracker {
     fn reach(
         &mut self,
         poses: &Poses<'_>,
-        candidates: &(Lattice, Trails),
+        candidates: &(Lattice, Trajectories),
         seen: &Targets<'_>,
         missing: bool,
         interrupt: &Interrupt,
@@ -215,9 +215,9 @@ impl Tracker {
             return Err(Error::Parameter { name: "poses", expected: "a clip longer than the window" });
         };
         let last = best - 1;
-        let (angle, shift) = self.sight.laid(&fit);
+        let (angle, shift) = self.observations.transform(&fit);
         let there = poses.place(last);
-        let mut place = turned([there[first], there[second]], angle, up);
+        let mut place = rotated([there[first], there[second]], angle, up);
         place[first] += shift[0];
         place[second] += shift[1];
         place[up] = there[up];
@@ -229,12 +229,12 @@ impl Tracker {
         })
     }
 
-    fn query<'a>(&'a self, poses: &Poses<'a>, candidates: &'a (Lattice, Trails)) -> Query<'a> {
+    fn query<'a>(&'a self, poses: &Poses<'a>, candidates: &'a (Lattice, Trajectories)) -> Query<'a> {
         Query {
             poses: *poses,
             lattice: &candidates.0,
-            trails: &candidates.1,
-            sight: &self.sight,
+            trajectories: &candidates.1,
+            observations: &self.observations,
             up: self.solver.body().up,
             scale: self.options.scale,
             count: self.options.neighbors,
@@ -246,7 +246,7 @@ impl Tracker {
     fn examples(
         &mut self,
         poses: &Poses<'_>,
-        candidates: &(Lattice, Trails),
+        candidates: &(Lattice, Trajectories),
         state: &State,
         walk: &Walk,
         interrupt: &Interrupt,
@@ -285,33 +285,33 @@ impl Tracker {
         let mut segments = Vec::with_capacity(found.len() * (order + 1) * joints * 4);
         let points = self.solver.body().points();
         let signals =
-            Signals::new(poses, (points, up), found, &self.sight, (state, order), self.options.scale);
+            Signals::new(poses, (points, up), found, &self.observations, (state, order), self.options.scale);
         for example in found.iter().map(|found| found.pose) {
             segments.extend(poses.segment(example - order..example + 1).iter().copied().map(f64::from));
         }
         let neighbors = Neighbors {
             segments: &segments,
-            root_steps: &signals.ways,
+            root_steps: &signals.root_steps,
             differences: &signals.differences,
             count: found.len(),
             frames: order + 1,
             joints,
-            roots: WAY,
+            roots: ROOT,
             signals: signals.count,
         };
-        let query = within(&segments, &state.recent, poses.joint_weights);
+        let query = shrunk(&segments, &state.recent, poses.joint_weights);
         let mut prediction =
             predict_pose(&neighbors, &query, poses.joint_weights, &self.options.model, interrupt)?;
         for (d, deviation) in prediction.deviation.iter_mut().enumerate() {
             let floor = self.options.floor[(d + 1).saturating_sub(3 * joints)];
             *deviation = (*deviation * *deviation + floor * floor).sqrt();
         }
-        let mut example: Vec<f64> = Vec::with_capacity(3 * joints + WAY);
+        let mut example: Vec<f64> = Vec::with_capacity(3 * joints + ROOT);
         let nearest = &segments[4 * order * joints..4 * (order + 1) * joints];
         for (q, &centre) in nearest.chunks_exact(4).zip(&prediction.chart) {
             example.extend(log_short(between(centre, of_row(q))).map(|v| 2.0 * v));
         }
-        example.extend(&signals.ways[..WAY]);
+        example.extend(&signals.root_steps[..ROOT]);
         let base = Base {
             centres: prediction.chart.as_flattened().to_vec(),
             place: state.place,
@@ -335,7 +335,7 @@ fn follow(state: State, pose: &Pose, up: usize) -> State {
     let angle = heading(of_row(&pose.rotations), up);
     let mut recent = state.recent;
     recent.drain(..width);
-    recent.extend(product(turn(-angle, up), of_row(&pose.rotations)));
+    recent.extend(product(rotation_about(-angle, up), of_row(&pose.rotations)));
     recent.extend(&pose.rotations[4..]);
     State { recent, place: pose.translation, heading: angle }
 }

@@ -3,7 +3,7 @@
 use crate::Error;
 use crate::error::check_length;
 use crate::reconstruction::frame::HORIZONTAL;
-use crate::reconstruction::kinematics::WAY;
+use crate::reconstruction::kinematics::ROOT;
 use crate::rotations::quaternion::{between, log_short, of_row};
 use crate::search::poses::graph::Graph;
 
@@ -17,7 +17,7 @@ pub struct Poses<'a> {
     /// Positions of the root, in the size of the body that is reconstructed, `(poses, 3)`.
     pub translation: &'a [f32],
     /// Positions of the control points, `(poses, points, 3)`.
-    pub trails: &'a [f32],
+    pub trajectories: &'a [f32],
     /// The first pose of each clip, and the number of poses.
     pub starts: &'a [i64],
     /// Poses as vectors, `(poses, 3·joints)`.
@@ -45,7 +45,7 @@ impl Poses<'_> {
         check_length("mean_rotations", 4 * joints, self.mean_rotations.len())?;
         check_length("rotations", 4 * count * joints, self.rotations.len())?;
         check_length("translation", 3 * count, self.translation.len())?;
-        check_length("trails", 3 * count * points, self.trails.len())?;
+        check_length("trajectories", 3 * count * points, self.trajectories.len())?;
         check_length("features", 3 * count * joints, self.features.len())?;
         let order = self.starts.first() == Some(&0)
             && self.starts.is_sorted()
@@ -58,7 +58,7 @@ impl Poses<'_> {
     }
 
     /// Ranges of poses with so many poses of their clip before them.
-    pub(super) fn old_enough(&self, frames: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
+    pub(super) fn with_history(&self, frames: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
         self.starts.windows(2).filter_map(move |ends| {
             let (start, stop) = (usize::try_from(ends[0]).ok()? + frames, usize::try_from(ends[1]).ok()?);
             (start < stop).then_some(start..stop)
@@ -93,7 +93,7 @@ impl Poses<'_> {
     }
 
     /// How the root of an example came to its pose: step along two axes of the heading before, height, turn.
-    pub(super) fn way(&self, example: usize, up: usize) -> [f64; WAY] {
+    pub(super) fn root_step(&self, example: usize, up: usize) -> [f64; ROOT] {
         let [first, second] = HORIZONTAL[up];
         let (here, before) = (self.place(example), self.place(example - 1));
         let angle = f64::from(self.heading[example - 1]);

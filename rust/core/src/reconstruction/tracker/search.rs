@@ -5,10 +5,10 @@
 //! and again in double precision for those that may be among the nearest.
 
 use super::lattice::Lattice;
+use super::observations::{Fit, Observations};
 use super::poses::Poses;
 use super::recent::Recent;
-use super::sight::{Fit, Sight};
-use super::trails::{LANES as SIDE_BY_SIDE, Trails};
+use super::trajectories::{LANES as SIDE_BY_SIDE, Trajectories};
 use crate::Error;
 use crate::parallel::{self, Interrupt};
 use crate::search::poses::squares_of;
@@ -37,8 +37,8 @@ pub(super) struct Example {
 pub(super) struct Query<'a> {
     pub(super) poses: Poses<'a>,
     pub(super) lattice: &'a Lattice,
-    pub(super) trails: &'a Trails,
-    pub(super) sight: &'a Sight,
+    pub(super) trajectories: &'a Trajectories,
+    pub(super) observations: &'a Observations,
     pub(super) up: usize,
     /// Distance of control points that counts as much as a radian between poses.
     pub(super) scale: f64,
@@ -64,10 +64,11 @@ impl Query<'_> {
         let mut seen = vec![0.0; all.len()];
         if share > 0.0 {
             let tasks: Vec<&mut [f64]> = seen.chunks_mut(TASK).collect();
-            let work = all.len() * (self.sight.marks() * 2 + 4);
+            let work = all.len() * (self.observations.count() * 2 + 4);
             parallel::for_each(tasks, work, |task, out| {
                 interrupt.check()?;
-                self.sight.distances(self.trails.planes(task * TASK..task * TASK + out.len()), out);
+                self.observations
+                    .distances(self.trajectories.planes(task * TASK..task * TASK + out.len()), out);
                 for distance in out {
                     *distance *= share;
                 }
@@ -119,9 +120,9 @@ impl Query<'_> {
         if share > 0.0 {
             let mut planes = Vec::new();
             let wide = candidates.len().next_multiple_of(SIDE_BY_SIDE);
-            self.trails.fill(&self.poses, candidates, &mut planes);
+            self.trajectories.fill(&self.poses, candidates, &mut planes);
             seen.resize(wide, 0.0);
-            self.sight.distances(&planes, &mut seen);
+            self.observations.distances(&planes, &mut seen);
             seen.truncate(candidates.len());
             for distance in &mut seen {
                 *distance *= share;
@@ -136,18 +137,18 @@ impl Query<'_> {
         let all = self.lattice.poses();
         let tasks: Vec<Range<usize>> =
             (0..all.len()).step_by(TASK).map(|start| start..(start + TASK).min(all.len())).collect();
-        let work = all.len() * (self.sight.marks() * 2 + 4);
+        let work = all.len() * (self.observations.count() * 2 + 4);
         let parts = parallel::map(tasks, work, |_, range| {
             interrupt.check()?;
             let mut distances = vec![0.0; range.len()];
-            self.sight.distances(self.trails.planes(range.clone()), &mut distances);
+            self.observations.distances(self.trajectories.planes(range.clone()), &mut distances);
             let of_all = distances.into_iter().zip(range);
             Ok(of_all.reduce(|best, next| if next.0 < best.0 { next } else { best }))
         })?;
         let best = parts.into_iter().flatten().reduce(|best, next| if next.0 < best.0 { next } else { best });
         Ok(best.map(|(_, slot)| {
             let pose = all[slot] as usize;
-            (pose, self.sight.fit(&self.poses, self.trails.points(), pose, self.up))
+            (pose, self.observations.fit(&self.poses, self.trajectories.points(), pose, self.up))
         }))
     }
 

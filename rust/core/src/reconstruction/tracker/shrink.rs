@@ -15,7 +15,7 @@ const BESIDE: f64 = 0.5;
 /// A pose that lies farther from the mean of the examples' poses of that frame than [`BESIDE`] times as these do, root mean square and
 /// weighted by joint, is moved towards it until it does not. What a regression makes of a query beyond its examples is passed on to the next
 /// query, and a wrong pose would be kept.
-pub(super) fn within(segments: &[f64], recent: &[f64], weights: &[f64]) -> Vec<f64> {
+pub(super) fn shrunk(segments: &[f64], recent: &[f64], weights: &[f64]) -> Vec<f64> {
     let width = 4 * weights.len();
     let length = recent.len() + width;
     let count = segments.len() / length;

@@ -10,14 +10,14 @@ pub(super) const LANES: usize = 8;
 /// Control points of all candidates and of the frames before them: for each group of [`LANES`] candidates, for each frame and
 /// each point, the two level coordinates and the height of each.
 #[derive(Debug, Clone)]
-pub(super) struct Trails {
+pub(super) struct Trajectories {
     planes: Vec<f32>,
     window: Vec<usize>,
     points: usize,
     up: usize,
 }
 
-impl Trails {
+impl Trajectories {
     /// Those of a lattice; `window` says how many frames before.
     pub(super) fn new(
         poses: &Poses<'_>,
@@ -26,11 +26,12 @@ impl Trails {
         points: usize,
         up: usize,
     ) -> Self {
-        let mut trails = Self { planes: Vec::new(), window: window.to_vec(), points, up };
-        let mut planes = Vec::with_capacity(lattice.poses().len().next_multiple_of(LANES) * trails.numbers());
-        trails.fill(poses, lattice.poses(), &mut planes);
-        trails.planes = planes;
-        trails
+        let mut trajectories = Self { planes: Vec::new(), window: window.to_vec(), points, up };
+        let mut planes =
+            Vec::with_capacity(lattice.poses().len().next_multiple_of(LANES) * trajectories.numbers());
+        trajectories.fill(poses, lattice.poses(), &mut planes);
+        trajectories.planes = planes;
+        trajectories
     }
 
     /// Whether they are of these points in these frames.
@@ -61,7 +62,7 @@ impl Trails {
                 for point in 0..self.points {
                     let at = rows.map(|row| {
                         let at = 3 * ((row - lag) * self.points + point);
-                        &poses.trails[at..at + 3]
+                        &poses.trajectories[at..at + 3]
                     });
                     for axis in [first, second, self.up] {
                         planes.extend(at.map(|place| place[axis]));

@@ -1,18 +1,18 @@
 //! Control points of the last frames, and how poses of the database fit them.
 
 use super::poses::Poses;
-use super::trails::LANES;
+use super::trajectories::LANES;
 use crate::reconstruction::frame::HORIZONTAL;
 use crate::simd::multiversion;
 
 /// A control point of one frame, as a weighted point of the plane with a height.
 #[derive(Debug, Clone, Copy)]
-struct Seen {
-    /// Where its row of the trails lies before that of the candidate, and in it.
+struct Observation {
+    /// Where its row of the trajectories lies before that of the candidate, and in it.
     lag: usize,
     point: usize,
     /// Which it is of a candidate's control points side by side.
-    place: usize,
+    slot: usize,
     share: f64,
     level: [f64; 2],
     height: f64,
@@ -27,8 +27,8 @@ pub(super) struct Fit {
 }
 
 multiversion! {
-    /// Weighted means of the squared distances that are left; `planes` are as in [`Trails`](super::trails::Trails).
-    fn distances(planes: &[f32], seen: &[Seen], spread: f64, out: &mut [f64]) {
+    /// Weighted means of the squared distances that are left; `planes` are as in [`Trajectories`](super::trajectories::Trajectories).
+    fn distances(planes: &[f32], seen: &[Observation], spread: f64, out: &mut [f64]) {
         let groups = out.len().div_ceil(LANES).max(1);
         for (planes, out) in planes.chunks_exact((planes.len() / groups).max(1)).zip(out.chunks_mut(LANES)) {
             let (planes, _) = planes.as_chunks::<LANES>();
@@ -36,7 +36,7 @@ multiversion! {
             let (mut square, mut height) = ([0.0; LANES], [0.0; LANES]);
             let mut origin = [[0.0; LANES]; 2];
             for (i, seen) in seen.iter().enumerate() {
-                let (x, y, up) = (&planes[3 * seen.place], &planes[3 * seen.place + 1], &planes[3 * seen.place + 2]);
+                let (x, y, up) = (&planes[3 * seen.slot], &planes[3 * seen.slot + 1], &planes[3 * seen.slot + 2]);
                 if i == 0 {
                     for lane in 0..LANES {
                         origin[0][lane] = f64::from(x[lane]);
@@ -70,35 +70,29 @@ multiversion! {
 
 /// Control points of the frame in question and of some before.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Sight {
-    seen: Vec<Seen>,
+pub(super) struct Observations {
+    seen: Vec<Observation>,
     /// Weighted mean of the level coordinates.
     mean: [f64; 2],
     /// Weighted mean of their squared distances from it.
     spread: f64,
 }
 
-impl Sight {
+impl Observations {
     /// Starts anew.
     pub(super) fn clear(&mut self) {
         self.seen.clear();
     }
 
-    /// Takes in the points `(points, 3)` of a frame with their weights; `(place, lag)` are which frame of the window it is, and
+    /// Takes in the points `(points, 3)` of a frame with their weights; `(slot, lag)` are which frame of the window it is, and
     /// how many frames ago.
-    pub(super) fn add(
-        &mut self,
-        (place, lag): (usize, usize),
-        positions: &[f64],
-        weights: &[f64],
-        up: usize,
-    ) {
+    pub(super) fn add(&mut self, (slot, lag): (usize, usize), positions: &[f64], weights: &[f64], up: usize) {
         let [first, second] = HORIZONTAL[up];
         for (point, (at, &share)) in positions.chunks_exact(3).zip(weights).enumerate() {
             if share > 0.0 {
                 let level = [at[first], at[second]];
-                let place = place * weights.len() + point;
-                self.seen.push(Seen { lag, point, place, share, level, height: at[up] });
+                let slot = slot * weights.len() + point;
+                self.seen.push(Observation { lag, point, slot, share, level, height: at[up] });
             }
         }
     }
@@ -121,7 +115,7 @@ impl Sight {
     }
 
     /// How many control points are compared.
-    pub(super) fn marks(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.seen.len()
     }
 
@@ -138,7 +132,7 @@ impl Sight {
         let mut origin = [0.0; 2];
         for (i, seen) in self.seen.iter().enumerate() {
             let row = 3 * ((candidate - seen.lag) * points + seen.point);
-            let at = &poses.trails[row..row + 3];
+            let at = &poses.trajectories[row..row + 3];
             let z = [f64::from(at[first]), f64::from(at[second])];
             if i == 0 {
                 origin = z;
@@ -152,7 +146,7 @@ impl Sight {
     }
 
     /// By how much a pose is turned, and moved after the turn.
-    pub(super) fn laid(&self, fit: &Fit) -> (f64, [f64; 2]) {
+    pub(super) fn transform(&self, fit: &Fit) -> (f64, [f64; 2]) {
         let [c, s] = fit.direction();
         let angle = crate::Real::atan2_nonnegative(s.abs(), c).copysign(s);
         let moved = [c * fit.mean[0] - s * fit.mean[1], s * fit.mean[0] + c * fit.mean[1]];
@@ -161,12 +155,12 @@ impl Sight {
 
     /// Whether the points lie farther than `scale` from their middle as seen from above, root mean square: nearer ones do not tell
     /// a heading.
-    pub(super) fn tells_heading(&self, scale: f64) -> bool {
+    pub(super) fn determines_heading(&self, scale: f64) -> bool {
         self.spread > scale * scale
     }
 
     /// What is left between the points and a pose that is laid on them: two level coordinates and the height of each, and its share.
-    pub(super) fn left<'a>(
+    pub(super) fn residuals<'a>(
         &'a self,
         poses: &'a Poses<'_>,
         points: usize,
@@ -177,7 +171,7 @@ impl Sight {
         let [c, s] = fit.direction();
         self.seen.iter().map(move |seen| {
             let row = 3 * ((candidate - seen.lag) * points + seen.point);
-            let at = &poses.trails[row..row + 3];
+            let at = &poses.trajectories[row..row + 3];
             let z = [f64::from(at[first]) - fit.mean[0], f64::from(at[second]) - fit.mean[1]];
             let x = c * z[0] - s * z[1] - seen.level[0];
             let y = s * z[0] + c * z[1] - seen.level[1];
