@@ -1,52 +1,54 @@
-//! Where control points are, and how they move with the coordinates of a pose.
+//! Forward kinematics of the control points and its Jacobian.
 //!
-//! The coordinates of a pose are a rotation vector for each joint and four numbers for the root's way: joint `j` rotations by
-//! `c_j exp(x_j / 2)` from its centre `c_j`; the root moreover by its heading, which is that of the frame before and a turn.
-//! It stands a step ahead of its place in the frame before, as seen in that frame's heading, and at a height of its own:
-//! `x = [3·J joint coordinates, forward, sideways, height, turn]`.
+//! The coordinates of a pose are a rotation vector for each joint and four numbers for the root's displacement. Joint
+//! `j` has the rotation `c_j exp(x_j / 2)` with its centre `c_j`. The root is rotated in addition by its heading: the
+//! previous heading plus a change. Its position is the previous position plus a step in the frame of the previous
+//! heading; its height is absolute: `x = [3·J joint coordinates, forward, sideways, height, heading change]`.
 //!
-//! Joints that no control point hangs below do not matter to it: all that is computed is of the chains above.
+//! Joints without a control point below them do not affect the control points: only the chains above control points
+//! are computed.
 
 use super::frame::{rotated, rotation_about};
 use crate::Error;
 use crate::Real;
 use crate::rotations::quaternion::{exp_one, of_row, product, rotate};
 
-/// Coordinates of the root's way.
+/// Number of coordinates of the root's displacement.
 pub const ROOT: usize = 4;
 
-/// Radians²: below, two terms of the series are good to the last digits of float64, and `θ − sin θ` is not.
+/// Squared angle, radians², below which two terms of the series are accurate to float64 and `θ − sin θ` is not.
 const SMALL_SQUARE: f64 = 1e-4;
 
-/// A 3 × 3 matrix by rows.
+/// A 3 × 3 matrix, row by row.
 pub(super) type Matrix = [[f64; 3]; 3];
 
-/// A skeleton, and which joints are control points.
+/// A skeleton with its control points.
 #[derive(Debug, Clone)]
 pub struct Body {
     /// The axis that points up.
     pub up: usize,
     joints: usize,
-    /// Of the joints above control points, and these: parents first.
+    /// The control points and the joints above them, parents first.
     active: Vec<Joint>,
-    /// The place of each control point in `active`.
+    /// The index of each control point in `active`.
     points: Vec<usize>,
 }
 
-/// A joint above a control point.
+/// A control point or a joint above one.
 #[derive(Debug, Clone, Copy)]
 struct Joint {
     index: usize,
-    /// Its parent's place among the active joints.
+    /// Index of its parent among the active joints.
     parent: Option<usize>,
     offset: [f64; 3],
 }
 
 impl Body {
-    /// A skeleton of one root, the first joint, with offsets `(joints, 3)`, and some joints as control points.
+    /// A skeleton with one root, the first joint, and offsets `(joints, 3)`; `points` are the joints that are control
+    /// points.
     ///
     /// # Errors
-    /// [`Error::Length`] and [`Error::Parameter`] if these do not fit each other.
+    /// [`Error::Length`] and [`Error::Parameter`] if these do not agree.
     pub fn new(
         parents: &[Option<usize>],
         offsets: &[f64],
@@ -82,25 +84,25 @@ impl Body {
         Ok(Self { up, joints, active, points })
     }
 
-    /// How many joints the skeleton has.
+    /// Number of joints of the skeleton.
     #[must_use]
     pub fn joints(&self) -> usize {
         self.joints
     }
 
-    /// How many control points there are.
+    /// Number of control points.
     #[must_use]
     pub fn points(&self) -> usize {
         self.points.len()
     }
 
-    /// How many coordinates a pose has.
+    /// Number of coordinates of a pose.
     #[must_use]
     pub fn coordinates(&self) -> usize {
         3 * self.joints + ROOT
     }
 
-    /// The coordinates that move control points, in the order of the columns of the Jacobian.
+    /// The coordinates that move control points, in the order of the Jacobian's columns.
     #[must_use]
     pub fn columns(&self) -> Vec<usize> {
         let of_joints = self.active.iter().flat_map(|joint| (0..3).map(move |i| 3 * joint.index + i));
@@ -108,19 +110,19 @@ impl Body {
     }
 }
 
-/// Where coordinates are measured from.
+/// Origin of the coordinates.
 #[derive(Debug, Clone)]
 pub struct Base {
-    /// Rotations at the origin, `(joints, 4)`; that of the root without a heading.
+    /// Rotations of all joints at the origin, `(joints, 4)`; the root's without its heading.
     pub centres: Vec<f64>,
-    /// Where the root was in the frame before; its height does not matter.
+    /// Position of the root in the previous frame; its height is not used.
     pub place: [f64; 3],
-    /// Its heading then, radians.
+    /// Heading of the root in the previous frame, radians.
     pub heading: f64,
 }
 
 impl Base {
-    /// Rotation of a joint relative to its parent; of the root with its heading.
+    /// Rotation of a joint relative to its parent; the root's includes its heading.
     fn rotation(&self, joint: usize, x: &[f64], up: usize, joints: usize) -> [f64; 4] {
         let half = [0.5 * x[3 * joint], 0.5 * x[3 * joint + 1], 0.5 * x[3 * joint + 2]];
         let rotation = product(of_row(&self.centres[4 * joint..]), exp_one(half));
@@ -138,7 +140,7 @@ impl Base {
         position
     }
 
-    /// Writes the rotations `(joints, 4)`, the root's with its heading, and returns the root's position.
+    /// Writes the rotations `(joints, 4)`, the root's including its heading, and returns the root's position.
     pub fn pose(&self, x: &[f64], up: usize, rotations: &mut [f64]) -> [f64; 3] {
         let joints = rotations.len() / 4;
         for (joint, out) in rotations.chunks_exact_mut(4).enumerate() {
@@ -148,7 +150,7 @@ impl Base {
     }
 }
 
-/// The active joints of a pose, and how control points move with the coordinates.
+/// Positions, rotations and Jacobians of the active joints of a pose.
 #[derive(Debug, Clone)]
 pub(super) struct Points {
     columns: usize,
@@ -168,12 +170,12 @@ impl Points {
         }
     }
 
-    /// How many coordinates move control points.
+    /// Number of coordinates that move control points.
     pub(super) fn columns(&self) -> usize {
         self.columns
     }
 
-    /// Moves the joints to the coordinates of a pose.
+    /// Computes the joints for the coordinates `x`.
     pub(super) fn place(&mut self, body: &Body, base: &Base, x: &[f64]) {
         for (i, joint) in body.active.iter().enumerate() {
             let local = base.rotation(joint.index, x, body.up, body.joints);
@@ -190,13 +192,13 @@ impl Points {
         }
     }
 
-    /// Where a control point is, and its global rotation.
+    /// Position and global rotation of a control point.
     pub(super) fn at(&self, body: &Body, point: usize) -> ([f64; 3], [f64; 4]) {
         let joint = body.points[point];
         (self.positions[joint], self.rotations[joint])
     }
 
-    /// How a control point rotations with the coordinates: angular velocities in the world, `(3, columns)`.
+    /// Rotation Jacobian of a control point: angular velocities in the world frame per coordinate, `(3, columns)`.
     pub(super) fn rotation_rows(&self, body: &Body, point: usize, rows: &mut [f64]) {
         rows.fill(0.0);
         let mut next = Some(body.points[point]);
@@ -209,9 +211,9 @@ impl Points {
         rows[body.up * self.columns + self.columns - 1] = 1.0;
     }
 
-    /// How a control point moves with the coordinates, `(3, columns)`.
+    /// Position Jacobian of a control point, `(3, columns)`.
     ///
-    /// A joint that rotations by `ω` moves what hangs below it by `ω × (place − joint)`.
+    /// A joint with the angular velocity `ω` moves the points below it by `ω × (position − joint)`.
     pub(super) fn position_rows(&self, body: &Body, base: &Base, point: usize, rows: &mut [f64]) {
         rows.fill(0.0);
         let columns = self.columns;
@@ -259,7 +261,7 @@ pub(super) fn transposed(a: &Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
 }
 
-/// `1 + first·[v] + second·[v]²`, with `[v]` the matrix of `v ×`.
+/// `1 + first·[v] + second·[v]²`, where `[v]` is the cross-product matrix of `v`.
 fn series(v: [f64; 3], first: f64, second: f64) -> Matrix {
     let across = cross_matrix(v);
     let twice = times(&across, &across);
@@ -289,7 +291,7 @@ pub(super) fn right_jacobian(v: [f64; 3]) -> Matrix {
     series(v, -first, second)
 }
 
-/// The inverse of [`right_jacobian`]: `1 + [v]/2 + (1/θ² − (1 + cos θ)/(2θ sin θ)) [v]²`, for angles up to a half turn.
+/// The inverse of [`right_jacobian`]: `1 + [v]/2 + (1/θ² − (1 + cos θ)/(2θ sin θ)) [v]²`, for angles up to 180°.
 pub(super) fn right_jacobian_inverse(v: [f64; 3]) -> Matrix {
     let square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     let second = if square < SMALL_SQUARE {

@@ -1,22 +1,23 @@
-//! Eigenvectors of symmetric matrices of up to some hundred rows: Householder's reflections to a tridiagonal matrix, and Francis'
-//! implicit QL steps with Wilkinson's shift (Golub and Van Loan, Matrix Computations, 8.3). Jacobi's rotations take ten times as long.
+//! Eigenvectors of symmetric matrices of up to some hundred rows: Householder reflections to tridiagonal form, then
+//! Francis' implicit QL steps with Wilkinson's shift (Golub and Van Loan, Matrix Computations, 8.3). Jacobi's method
+//! takes ten times as long.
 
 use super::dense::Matrix;
 use crate::Error;
 use crate::parallel::Interrupt;
 use crate::simd::multiversion;
 
-/// Steps at most for each eigenvalue; two are usual.
+/// Largest number of steps per eigenvalue; two are usual.
 const STEPS: usize = 40;
 
-/// Eigenvalues and, in rows, their vectors.
+/// Eigenvalues and, in rows, the eigenvectors.
 #[derive(Debug)]
 pub(super) struct Eigen {
     pub(super) values: Vec<f64>,
     pub(super) vectors: Matrix,
 }
 
-/// All eigenvalues of a symmetric matrix, the largest first.
+/// All eigenvalues of a symmetric matrix, in descending order, with their eigenvectors.
 pub(super) fn eigen(mut matrix: Matrix, interrupt: &Interrupt) -> Result<Eigen, Error> {
     let n = matrix.columns();
     let mut vectors = Matrix::new(n, n);
@@ -35,7 +36,7 @@ pub(super) fn eigen(mut matrix: Matrix, interrupt: &Interrupt) -> Result<Eigen, 
     Ok(Eigen { values: order.iter().map(|&i| values[i]).collect(), vectors: sorted })
 }
 
-/// Reflects to a tridiagonal matrix: its diagonal, and what stands beside it. `vectors` are reflected from the left.
+/// Reduces to tridiagonal form and returns the diagonal and the off-diagonal. `vectors` are reflected from the left.
 fn tridiagonal(
     matrix: &mut Matrix,
     vectors: &mut Matrix,
@@ -49,6 +50,7 @@ fn tridiagonal(
         interrupt.check()?;
         normal.fill(0.0);
         normal[k + 1..n].copy_from_slice(&matrix.data()[k * width + k + 1..k * width + n]);
+        // Householder reflection that zeroes row k beyond the off-diagonal element.
         let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
         if length == 0.0 {
             continue;
@@ -92,7 +94,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Takes multiples of `other` away from rows.
+    /// Subtracts multiples of `other` from rows.
     fn subtract(rows: &mut [f64], factors: &[f64], other: &[f64]) {
         let width = other.len();
         for (row, factor) in rows.chunks_exact_mut(width).zip(factors) {
@@ -103,7 +105,7 @@ multiversion! {
     }
 }
 
-/// Turns a tridiagonal matrix into a diagonal one; the rows of `vectors` turn with it.
+/// Diagonalises a tridiagonal matrix; the rows of `vectors` are rotated along with it.
 fn diagonal(
     values: &mut [f64],
     off_diagonal: &mut [f64],
@@ -120,6 +122,7 @@ fn diagonal(
             if high == low {
                 break;
             }
+            // Wilkinson's shift, then a sweep of Givens rotations from `high` to `low` that chases the bulge.
             let ahead = (values[low + 1] - values[low]) / (2.0 * off_diagonal[low]);
             let root = (ahead * ahead + 1.0).sqrt().copysign(ahead);
             let mut bulge = values[high] - values[low] + off_diagonal[low] / (ahead + root);

@@ -1,4 +1,4 @@
-//! Where control points are seen, and by how much a pose misses them.
+//! Observed control points, and the errors of a pose relative to them.
 
 use crate::Error;
 use crate::error::check_length;
@@ -7,16 +7,16 @@ use crate::reconstruction::kinematics::{
 };
 use crate::rotations::quaternion::{between, log_short, of_row};
 
-/// Where control points are seen.
+/// Observed control points.
 #[derive(Debug, Clone, Copy)]
 pub struct Targets<'a> {
-    /// Their places, `(points, 3)`.
+    /// Positions, `(points, 3)`.
     pub positions: &'a [f64],
-    /// Standard deviation of each coordinate, `(points)`; infinite where a point is not seen.
+    /// Standard deviation of each coordinate, `(points)`; infinite where a point is not observed.
     pub position_deviations: &'a [f64],
-    /// Their global rotations, `(points, 4)`.
+    /// Global rotations, `(points, 4)`.
     pub orientations: &'a [f64],
-    /// Standard deviation of each component of the rotation vector, radians, `(points)`; infinite where it is not seen.
+    /// Standard deviation of each component of the rotation vector, radians, `(points)`; infinite where not observed.
     pub orientation_deviations: &'a [f64],
 }
 
@@ -28,7 +28,7 @@ impl Targets<'_> {
         check_length("orientation_deviations", points, self.orientation_deviations.len())
     }
 
-    /// How many errors there are.
+    /// Number of errors.
     pub(super) fn count(&self) -> usize {
         let seen = |deviations: &[f64]| deviations.iter().filter(|deviation| deviation.is_finite()).count();
         3 * (seen(self.position_deviations) + seen(self.orientation_deviations))
@@ -53,12 +53,12 @@ impl Errors {
         self.points.columns()
     }
 
-    /// Half the sum of the squares.
+    /// Half the sum of squares.
     pub(super) fn energy(&self) -> f64 {
         0.5 * self.values.iter().map(|value| value * value).sum::<f64>()
     }
 
-    /// Errors of the pose with the coordinates `x`.
+    /// Computes the errors of the pose with the coordinates `x`, and their Jacobian.
     pub(super) fn at(&mut self, body: &Body, base: &Base, targets: &Targets<'_>, x: &[f64]) {
         let columns = self.points.columns();
         self.values.clear();
@@ -97,7 +97,7 @@ impl Errors {
     }
 }
 
-/// Which points are seen.
+/// Indices of the observed points.
 fn seen(deviations: &[f64]) -> impl Iterator<Item = usize> {
     deviations.iter().enumerate().filter(|(_, deviation)| deviation.is_finite()).map(|(point, _)| point)
 }

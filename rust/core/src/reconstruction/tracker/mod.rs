@@ -1,4 +1,4 @@
-//! A motion that follows control points, frame by frame.
+//! Frame-by-frame reconstruction of a motion from control points.
 
 mod lattice;
 mod observations;
@@ -35,42 +35,43 @@ use tables::Shape;
 use trajectories::Trajectories;
 use walk::Walk;
 
-/// How a motion is reconstructed.
+/// Options of a reconstruction.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// How many poses before are compared, and predicted from.
+    /// Number of previous poses that are compared and that the prediction uses.
     pub order: usize,
-    /// How many examples are learned from.
+    /// Number of examples.
     pub neighbors: usize,
-    /// Every which pose of a clip may be an example.
+    /// Only every `stride`-th pose of a clip is a candidate.
     pub stride: usize,
-    /// So many frames apart are examples of one clip, at least.
+    /// Minimum distance between two examples of one clip, in frames.
     pub spacing: usize,
-    /// How many frames ago control points are compared.
+    /// Lags, in frames, at which control points are compared.
     pub window: Vec<usize>,
-    /// Distance of control points that counts as much as a radian between poses, where examples are looked for and where they are
-    /// learned from; infinite: poses alone.
+    /// Distance of control points that counts as much as one radian between poses, in the search for examples and in
+    /// the regression; infinite: only poses count.
     pub scale: f64,
-    /// After so many frames without a control point the next one is a new start.
+    /// Number of frames without any control point after which the tracker restarts.
     pub patience: usize,
-    /// How examples predict.
+    /// The local model.
     pub model: local_models::Options,
-    /// Standard deviations of what models do not see: of a joint's coordinate in radians, and of the root's way.
+    /// Standard deviations added to those of the model: of a joint's coordinate in radians, and of the root's
+    /// displacement.
     pub floor: [f64; 1 + ROOT],
-    /// The most steps of the solver per frame.
+    /// Largest number of solver steps per frame.
     pub steps: usize,
-    /// With a graph: when all examples are looked at nevertheless.
+    /// With a graph: when the tracker falls back to a full search.
     pub fallback: Fallback,
 }
 
-/// What is known of the frames before.
+/// State after the previous frame.
 #[derive(Debug, Clone)]
 pub struct State {
     /// The last poses, `(order, joints, 4)`, the oldest first, without headings.
     pub recent: Vec<f64>,
-    /// Where the root was in the last frame.
+    /// Position of the root in the last frame.
     pub place: [f64; 3],
-    /// Its heading then, radians.
+    /// Heading of the root in the last frame, radians.
     pub heading: f64,
 }
 
@@ -81,11 +82,11 @@ pub struct Pose {
     pub rotations: Vec<f64>,
     /// Position of the root.
     pub translation: [f64; 3],
-    /// The two parts of the energy: of what is seen, and of what was expected.
+    /// The two terms of the energy: of the observations and of the prior.
     pub energies: [f64; 2],
 }
 
-/// Takes control points frame by frame, and gives poses.
+/// Reconstructs poses from control points, frame by frame.
 #[derive(Debug, Clone)]
 pub struct Tracker {
     solver: Solver,
@@ -93,22 +94,22 @@ pub struct Tracker {
     state: Option<State>,
     /// Control points of the last frames and their weights, the newest first.
     past: VecDeque<(Vec<f64>, Vec<f64>)>,
-    /// Frames since a control point was seen.
+    /// Number of frames since a control point was observed.
     blind: usize,
     observations: Observations,
-    /// What does not depend on the frame.
+    /// Tables that do not depend on the frame.
     tables: Arc<Tables>,
     walk: Walk,
-    /// A bit for each pose of the database.
+    /// Bit set over all poses of the database.
     bits: Vec<u64>,
 }
 
 impl Tracker {
-    /// A tracker of one body; without a state it starts from the pose of the database that fits the first frame best. Trackers of the same
-    /// body, options and poses may share their `tables`, which are empty at first.
+    /// A tracker of one body. Without a state it starts from the pose of the database that fits the first frame best.
+    /// Trackers of the same body, options and poses may share their `tables`, which are empty at first.
     ///
     /// # Errors
-    /// [`Error::Length`] and [`Error::Parameter`] if options and state are not of the body.
+    /// [`Error::Length`] and [`Error::Parameter`] if options and state do not match the body.
     pub fn new(
         body: Body,
         options: Options,
@@ -134,19 +135,20 @@ impl Tracker {
         })
     }
 
-    /// How many poses of its clip an example has before it.
+    /// Number of poses of its clip that an example needs before it.
     fn before(&self) -> usize {
         self.options.window.iter().copied().max().unwrap_or(0).max(self.options.order)
     }
 
-    /// Takes in the control points of the next frame, and returns its pose.
+    /// Takes the control points of the next frame, and returns its pose.
     ///
-    /// The poses must be the same in each frame. In each, the examples nearest to the last poses are found, a local model of how
-    /// they went on predicts the pose, and the most probable pose is found from the prediction or from the nearest example, whichever has the lower energy.
+    /// The poses must be the same in each frame. Each frame takes three steps: search the examples nearest to the
+    /// last poses; predict the pose by a local model of the examples; minimise the energy, starting from the
+    /// prediction or from the nearest example, whichever has the lower energy.
     ///
     /// # Errors
-    /// [`Error::Length`] and [`Error::Parameter`] if the database or the targets are not of the body, or the database has no
-    /// clip that is long enough; [`Error::Interrupted`]. The tracker then is as it was.
+    /// [`Error::Length`] and [`Error::Parameter`] if the database or the targets do not match the body, or no clip of
+    /// the database is long enough; [`Error::Interrupted`]. The tracker is then unchanged.
     pub fn push(
         &mut self,
         poses: &Poses<'_>,
@@ -187,7 +189,7 @@ impl Tracker {
         Ok(pose)
     }
 
-    /// The pose of the next frame, the state that it was found from, and the walk that goes on from it.
+    /// The pose of the next frame, the state from which it was computed, and the updated walk.
     fn reach(
         &mut self,
         poses: &Poses<'_>,
@@ -206,7 +208,7 @@ impl Tracker {
         Ok((pose, state, walk))
     }
 
-    /// What came before, from the pose that fits the control points best, where it fits best.
+    /// Initial state: the poses before the best-fitting pose of the database, moved to the best fit.
     fn begin(&self, query: &Query<'_>, interrupt: &Interrupt) -> Result<State, Error> {
         let up = self.solver.body().up;
         let [first, second] = HORIZONTAL[up];
@@ -242,7 +244,7 @@ impl Tracker {
         }
     }
 
-    /// The examples of a frame, along the graph if there is one and it leads near enough.
+    /// The examples of a frame: along the graph if there is one and its result is near enough, else by a full search.
     fn examples(
         &mut self,
         poses: &Poses<'_>,
@@ -329,7 +331,7 @@ impl Tracker {
     }
 }
 
-/// What is known after one more frame.
+/// The state after one more frame.
 fn follow(state: State, pose: &Pose, up: usize) -> State {
     let width = pose.rotations.len();
     let angle = heading(of_row(&pose.rotations), up);

@@ -1,33 +1,34 @@
-//! Control points of the last frames, and how poses of the database fit them.
+//! Control points of the last frames, and the fit of database poses to them.
 
 use super::poses::Poses;
 use super::trajectories::LANES;
 use crate::reconstruction::frame::HORIZONTAL;
 use crate::simd::multiversion;
 
-/// A control point of one frame, as a weighted point of the plane with a height.
+/// A control point of one frame: weight, horizontal position and height.
 #[derive(Debug, Clone, Copy)]
 struct Observation {
-    /// Where its row of the trajectories lies before that of the candidate, and in it.
+    /// Lag and index of the control point: its row in the trajectories, relative to the candidate.
     lag: usize,
     point: usize,
-    /// Which it is of a candidate's control points side by side.
+    /// Its index among the control points of a candidate.
     slot: usize,
     share: f64,
     level: [f64; 2],
     height: f64,
 }
 
-/// How a pose of the database lies on the control points.
+/// Rigid fit of a database pose to the control points: rotation about the up axis and horizontal shift.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fit {
-    /// Real and imaginary part of `Σ w z̄_i c_i`, whose angle is the turn.
+    /// Real and imaginary part of `Σ w z̄_i c_i`, whose argument is the rotation angle.
     product: [f64; 2],
     mean: [f64; 2],
 }
 
 multiversion! {
-    /// Weighted means of the squared distances that are left; `planes` are as in [`Trajectories`](super::trajectories::Trajectories).
+    /// Weighted mean squared distances after the best fit; `planes` are as in
+    /// [`Trajectories`](super::trajectories::Trajectories).
     fn distances(planes: &[f32], seen: &[Observation], spread: f64, out: &mut [f64]) {
         let groups = out.len().div_ceil(LANES).max(1);
         for (planes, out) in planes.chunks_exact((planes.len() / groups).max(1)).zip(out.chunks_mut(LANES)) {
@@ -68,24 +69,24 @@ multiversion! {
     }
 }
 
-/// Control points of the frame in question and of some before.
+/// Control points of the current frame and of some previous ones.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Observations {
     seen: Vec<Observation>,
-    /// Weighted mean of the level coordinates.
+    /// Weighted mean of the horizontal coordinates.
     mean: [f64; 2],
     /// Weighted mean of their squared distances from it.
     spread: f64,
 }
 
 impl Observations {
-    /// Starts anew.
+    /// Removes all observations.
     pub(super) fn clear(&mut self) {
         self.seen.clear();
     }
 
-    /// Takes in the points `(points, 3)` of a frame with their weights; `(slot, lag)` are which frame of the window it is, and
-    /// how many frames ago.
+    /// Adds the points `(points, 3)` of a frame with their weights. `(slot, lag)` are the index of the frame in the
+    /// window and its lag in frames.
     pub(super) fn add(&mut self, (slot, lag): (usize, usize), positions: &[f64], weights: &[f64], up: usize) {
         let [first, second] = HORIZONTAL[up];
         for (point, (at, &share)) in positions.chunks_exact(3).zip(weights).enumerate() {
@@ -97,7 +98,7 @@ impl Observations {
         }
     }
 
-    /// Turns weights into shares, and takes the mean away.
+    /// Normalises the weights to sum 1, and subtracts the weighted mean.
     pub(super) fn finish(&mut self) {
         let total: f64 = self.seen.iter().map(|seen| seen.share).sum();
         self.mean = [0.0; 2];
@@ -114,21 +115,21 @@ impl Observations {
         }
     }
 
-    /// How many control points are compared.
+    /// Number of observed control points.
     pub(super) fn count(&self) -> usize {
         self.seen.len()
     }
 
-    /// The distances that [`fit`](Self::fit) leaves, of candidates side by side.
+    /// Squared distances after the best fit, of candidates side by side.
     pub(super) fn distances(&self, planes: &[f32], out: &mut [f64]) {
         distances(planes, &self.seen, self.spread, out);
     }
 
-    /// Lays a pose on the points: turned about the up axis, and moved on the ground.
+    /// Fits a pose to the points by a rotation about the up axis and a horizontal shift.
     pub(super) fn fit(&self, poses: &Poses<'_>, points: usize, candidate: usize, up: usize) -> Fit {
         let [first, second] = HORIZONTAL[up];
         let (mut mean, mut product) = ([0.0; 2], [0.0; 2]);
-        // From the first point: coordinates of a clip may be large.
+        // Relative to the first point: coordinates of a clip may be large.
         let mut origin = [0.0; 2];
         for (i, seen) in self.seen.iter().enumerate() {
             let row = 3 * ((candidate - seen.lag) * points + seen.point);
@@ -145,7 +146,7 @@ impl Observations {
         Fit { product, mean: [mean[0] + origin[0], mean[1] + origin[1]] }
     }
 
-    /// By how much a pose is turned, and moved after the turn.
+    /// Rotation angle of a fit, and the shift after the rotation.
     pub(super) fn transform(&self, fit: &Fit) -> (f64, [f64; 2]) {
         let [c, s] = fit.direction();
         let angle = crate::Real::atan2_nonnegative(s.abs(), c).copysign(s);
@@ -153,13 +154,13 @@ impl Observations {
         (angle, [self.mean[0] - moved[0], self.mean[1] - moved[1]])
     }
 
-    /// Whether the points lie farther than `scale` from their middle as seen from above, root mean square: nearer ones do not tell
-    /// a heading.
+    /// Whether the root-mean-square horizontal distance of the points from their mean exceeds `scale`. Otherwise they
+    /// do not determine a heading.
     pub(super) fn determines_heading(&self, scale: f64) -> bool {
         self.spread > scale * scale
     }
 
-    /// What is left between the points and a pose that is laid on them: two level coordinates and the height of each, and its share.
+    /// Residuals of a fitted pose at the points: two horizontal coordinates and the height, with the weight.
     pub(super) fn residuals<'a>(
         &'a self,
         poses: &'a Poses<'_>,
@@ -179,7 +180,7 @@ impl Observations {
         })
     }
 
-    /// Where a place on the ground comes when a pose is laid on the points.
+    /// Position on the ground after the fit.
     pub(super) fn moved(&self, fit: &Fit, place: [f64; 2]) -> [f64; 2] {
         let [c, s] = fit.direction();
         let z = [place[0] - fit.mean[0], place[1] - fit.mean[1]];
@@ -188,7 +189,7 @@ impl Observations {
 }
 
 impl Fit {
-    /// Cosine and sine of the turn.
+    /// Cosine and sine of the rotation angle.
     fn direction(&self) -> [f64; 2] {
         let [re, im] = self.product;
         let length = (re * re + im * im).sqrt();

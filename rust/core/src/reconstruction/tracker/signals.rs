@@ -1,4 +1,5 @@
-//! What control points tell a local model: how far its examples are from them, and where their roots stand when laid on them.
+//! Inputs of the local model from control points: residuals of the fitted examples and positions of their roots after
+//! the fit.
 
 use super::State;
 use super::observations::Observations;
@@ -9,20 +10,22 @@ use crate::reconstruction::frame::HORIZONTAL;
 use crate::reconstruction::kinematics::ROOT;
 use std::f64::consts::TAU;
 
-/// What the control points tell.
+/// Inputs and root outputs of the local model.
 #[derive(Debug, Default)]
 pub(super) struct Signals {
-    /// `(examples, count)`: what is left between the control points and the examples laid on them, as seen from the last heading, in
-    /// units of the scale. Its sum of squares is `order` times what control points add to the squared distance of the example.
+    /// `(examples, count)`: residuals between the control points and the fitted examples, in the frame of the last
+    /// heading and in units of the scale. Their sum of squares is `order` times the control points' term of the
+    /// squared distance.
     pub(super) differences: Vec<f64>,
-    /// Three for each control point of each frame that is seen; none with an infinite scale.
+    /// Three per observed control point and frame; 0 if the scale is infinite.
     pub(super) count: usize,
-    /// `(examples, ROOT)`: how the roots come there; where control points do not tell a heading, as they came in the database.
+    /// `(examples, ROOT)`: root displacements after the fit; as in the database if the control points do not
+    /// determine a heading.
     pub(super) root_steps: Vec<f64>,
 }
 
 impl Signals {
-    /// Those of some examples; `points` is how many control points there are.
+    /// The inputs of some examples; `points` is the number of control points.
     pub(super) fn new(
         poses: &Poses<'_>,
         (points, up): (usize, usize),
