@@ -4,9 +4,9 @@
 const SWEEPS: usize = 30;
 
 /// Turns `matrix` until it is diagonal; `turn` hears of each rotation of two rows.
-fn diagonalise<const N: usize>(matrix: &mut [[f64; N]; N], mut turn: impl FnMut(usize, usize, f64, f64)) {
+fn diagonalise<const N: usize>(matrix: &mut [[f64; N]; N], mut rotate: impl FnMut(usize, usize, f64, f64)) {
     for _ in 0..SWEEPS {
-        let mut turned = false;
+        let mut rotated = false;
         for p in 0..N {
             for q in p + 1..N {
                 let beside = matrix[p][q];
@@ -14,7 +14,7 @@ fn diagonalise<const N: usize>(matrix: &mut [[f64; N]; N], mut turn: impl FnMut(
                 if beside.abs() <= f64::EPSILON * 0.5 * (a * b).abs().sqrt() || beside == 0.0 {
                     continue;
                 }
-                turned = true;
+                rotated = true;
                 let theta = (b - a) / (2.0 * beside);
                 let tangent = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
                 let cosine = 1.0 / (tangent * tangent + 1.0).sqrt();
@@ -23,10 +23,10 @@ fn diagonalise<const N: usize>(matrix: &mut [[f64; N]; N], mut turn: impl FnMut(
                     (row[p], row[q]) = (cosine * row[p] - sine * row[q], sine * row[p] + cosine * row[q]);
                 }
                 rotate_rows(matrix, p, q, cosine, sine);
-                turn(p, q, cosine, sine);
+                rotate(p, q, cosine, sine);
             }
         }
-        if !turned {
+        if !rotated {
             break;
         }
     }

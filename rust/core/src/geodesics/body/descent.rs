@@ -137,7 +137,7 @@ impl Ground<'_> {
             if length.is_nan() || length * share < SHORTEST {
                 break;
             }
-            let trial = turned(v, step, share, length);
+            let trial = moved(v, step, share, length);
             let there = self.slope(&trial, s)?;
             let enough = there.value <= here.value + DECREASE * share * promised;
             let level = there.value <= here.value * (1.0 + ROUNDINGS);
@@ -189,7 +189,7 @@ fn newton_like(gradient: &[f64], pairs: &VecDeque<Pair>, v: &[f64]) -> Vec<f64> 
 }
 
 /// Moves the unit vector `v` along the sphere by a share of a vector across it, of the given length.
-fn turned(v: &[f64], step: &[f64], share: f64, length: f64) -> Vec<f64> {
+fn moved(v: &[f64], step: &[f64], share: f64, length: f64) -> Vec<f64> {
     let (sin, cos) = crate::Real::sin_cos(length * share);
     let along = if length > 0.0 { sin / length } else { 0.0 };
     let mut moved: Vec<f64> = v.iter().zip(step).map(|(v, step)| cos * v + along * step).collect();

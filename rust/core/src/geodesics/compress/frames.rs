@@ -18,7 +18,7 @@ const SAMPLES: usize = 1024;
 /// Times that the two vectors of the second frame are improved in turns.
 const ROUNDS: usize = 40;
 
-const UNTURNED: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
+const IDENTITY: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
 
 type Vector = [f64; 3];
 
@@ -51,7 +51,7 @@ pub fn principal_frames<T: Real>(
             .map(|&q| unit(q))
             .collect();
         if path.is_empty() {
-            return Ok([[UNTURNED; 2]; 2]);
+            return Ok([[IDENTITY; 2]; 2]);
         }
         let mut moments = [[0.0; 4]; 4];
         for &q in &path {
@@ -83,7 +83,7 @@ fn geodesics(path: &[[f64; 4]], centre: [f64; 4], beside: [f64; 4]) -> [[f64; 4]
         }
     }
     let second = vectors(moments)[2];
-    [centre, turning_into(first, second)]
+    [centre, rotation_to(first, second)]
 }
 
 fn surface(path: &[[f64; 4]], centre: [f64; 4]) -> [[f64; 4]; 2] {
@@ -117,13 +117,13 @@ fn surface(path: &[[f64; 4]], centre: [f64; 4]) -> [[f64; 4]; 2] {
     let length = dot3(first, first).sqrt();
     if length < 0.5 {
         // The vectors do not belong together: no such surface.
-        return [centre, UNTURNED];
+        return [centre, IDENTITY];
     }
     let first = first.map(|x| x / length);
     let there = rotate(centre, first);
     let axis = cross(there, outer);
-    let way = unit([1.0 + dot3(there, outer), axis[0], axis[1], axis[2]]);
-    [product(way, centre), turning_into(first, inner)]
+    let rotation = unit([1.0 + dot3(there, outer), axis[0], axis[1], axis[2]]);
+    [product(rotation, centre), rotation_to(first, inner)]
 }
 
 /// The sum of `f` over all pairs of indices.
@@ -159,7 +159,7 @@ fn matrix(q: [f64; 4]) -> [Vector; 3] {
 }
 
 /// The rotation that turns x and y into two orthonormal vectors, with `w ≥ 0`.
-fn turning_into(a: Vector, b: Vector) -> [f64; 4] {
+fn rotation_to(a: Vector, b: Vector) -> [f64; 4] {
     let c = cross(a, b);
     // Four times the products of the components; the row with the largest square has all digits.
     let rows = [
@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn two_degrees_of_freedom_are_found() {
         let (a, b) = (unit([0.0, 1.0, 2.0, -1.0]), unit([0.0, 1.0, 0.0, 1.0]));
-        let turn = |axis: [f64; 4], s: f64| {
+        let rotate = |axis: [f64; 4], s: f64| {
             let (sine, cosine) = Real::sin_cos(s);
             [cosine, sine * axis[1], sine * axis[2], sine * axis[3]]
         };
@@ -189,8 +189,8 @@ mod tests {
             .map(|i| {
                 let t = f64::from(i) * 0.05;
                 product(
-                    turn(a, 0.3 + 0.4 * Real::sin_cos(t).0),
-                    turn(b, 0.2 * Real::sin_cos(1.7 * t).1 - 0.5),
+                    rotate(a, 0.3 + 0.4 * Real::sin_cos(t).0),
+                    rotate(b, 0.2 * Real::sin_cos(1.7 * t).1 - 0.5),
                 )
             })
             .collect();

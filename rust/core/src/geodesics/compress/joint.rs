@@ -38,7 +38,7 @@ const FINE: u32 = 32;
 const FINE_BELOW: f64 = 1e-3;
 
 /// Axes of a joint that does not move.
-const UNTURNED: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
+const IDENTITY: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
 
 /// Bits of the length of a step: sign, exponent of float64, and eight bits of the significand.
 const STEP_BITS: u32 = 20;
@@ -137,7 +137,7 @@ impl Joint {
                     joint.floats.extend_from_slice(s);
                 }
             }
-            let frame = if components == 0 { Frame { axes: UNTURNED, ..fit.frame } } else { fit.frame };
+            let frame = if components == 0 { Frame { axes: IDENTITY, ..fit.frame } } else { fit.frame };
             let result = chart::rotations::<T>(&s, frame);
             joint.error = chart::largest_angle(valid, &result);
             if joint.error <= bound {
@@ -167,7 +167,7 @@ impl Joint {
                 s.copy_from_slice(floats);
             }
             let [centre, axes] = self.frame.map(|numbers| chart::from_rounded(numbers, self.width));
-            let axes = if self.kind == 0 { UNTURNED } else { axes };
+            let axes = if self.kind == 0 { IDENTITY } else { axes };
             chart::rotations::<T>(&s, Frame { centre, axes })
         };
         let mut opposite = self.opposite;
@@ -307,7 +307,7 @@ mod tests {
             .map(|i| crate::Real::sin_cos(f64::from(i) / 100.0))
             .map(|(s, c)| [c, s, 0.0, 0.0])
             .collect();
-        let frames = [[UNTURNED; 2]; 2];
+        let frames = [[IDENTITY; 2]; 2];
         let (stop, go) = (Interrupt::new(), Interrupt::new());
         stop.set();
         let fit = |interrupt: &Interrupt| {

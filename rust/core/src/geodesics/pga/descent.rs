@@ -74,7 +74,7 @@ pub(super) fn descent(
             if moved.is_some() {
                 break;
             }
-            let trial = turned(v, [0, 1, 2].map(|i| step[0] * across[0][i] + step[1] * across[1][i]));
+            let trial = moved(v, [0, 1, 2].map(|i| step[0] * across[0][i] + step[1] * across[1][i]));
             let trial_across = basis(trial);
             let there = slope(samples, trial, trial_across, objective, interrupt)?;
             let lower = there.value < here.value;
@@ -105,8 +105,8 @@ fn newton_step(here: &Slope) -> [f64; 2] {
     }
     // Away from a cone point only the steepest way is sure to lead downhill.
     let along = if here.cone > 0.0 {
-        let way = here.gradient.map(|x| x / steepness);
-        [way, [0.0; 2]]
+        let direction = here.gradient.map(|x| x / steepness);
+        [direction, [0.0; 2]]
     } else {
         let spread = ((a - c) * (a - c) + 4.0 * b * b).sqrt();
         // The eigenvector for the greater eigenvalue, from the column with the greater entries.
@@ -148,7 +148,7 @@ fn onto_sample(
 }
 
 /// Unit vector `v` moved along the sphere by a vector across it.
-fn turned(v: [f64; 3], step: [f64; 3]) -> [f64; 3] {
+fn moved(v: [f64; 3], step: [f64; 3]) -> [f64; 3] {
     let angle = dot(step, step).sqrt();
     let (sine, cosine) = Real::sin_cos(angle);
     let factor = if angle > 0.0 { sine / angle } else { 1.0 };

@@ -165,7 +165,7 @@ multiversion! {
         let [w, x, y, z] = samples.map(|plane| plane.as_chunks::<LANES>().0);
         for (((w, x), y), z) in w.iter().zip(x).zip(y).zip(z) {
             for c in 0..LANES {
-                let (_, sine, cosine) = place([w[c], x[c], y[c], z[c]], v);
+                let (_, sine, cosine) = project([w[c], x[c], y[c], z[c]], v);
                 sums[0][c] += S::value(sine, cosine);
             }
         }
@@ -175,7 +175,7 @@ multiversion! {
 
 /// `v·u`, and sine and cosine of the distance from the geodesic.
 #[inline(always)]
-pub(super) fn place([w, x, y, z]: [f64; 4], v: [f64; 3]) -> (f64, f64, f64) {
+pub(super) fn project([w, x, y, z]: [f64; 4], v: [f64; 3]) -> (f64, f64, f64) {
     let across = cross([x, y, z], v);
     let p = dot([x, y, z], v);
     (p, dot(across, across).sqrt(), (w * w + p * p).sqrt())
@@ -259,7 +259,7 @@ multiversion! {
         for (((w, x), y), z) in w.iter().zip(x).zip(y).zip(z) {
             for c in 0..LANES {
                 let u = [x[c], y[c], z[c]];
-                let (p, sine, f) = place([w[c], x[c], y[c], z[c]], v);
+                let (p, sine, f) = project([w[c], x[c], y[c], z[c]], v);
                 let off = sine > ON_GEODESIC;
                 let over_sine = if off { 1.0 / sine } else { 0.0 };
                 let over_f = 1.0 / f;

@@ -138,7 +138,7 @@ pub fn geodesic_product<T: Real>(
                         let row = (task * TASK + first + c) * joints + joint;
                         *angle = scores[row * k + component].to_f64() / 2.0;
                     }
-                    turn(&mut q, geodesics.axis(component, joints, joint), &angles);
+                    rotate(&mut q, geodesics.axis(component, joints, joint), &angles);
                 }
                 let [w, x, y, z] = &q;
                 for (c, (((w, x), y), z)) in w.iter().zip(x).zip(y).zip(z).enumerate().take(count) {
@@ -153,7 +153,7 @@ pub fn geodesic_product<T: Real>(
 
 multiversion! {
     /// Multiplies rotations by `c_v(s)`.
-    fn turn(q: &mut [[f64; LANES]; 4], v: [f64; 3], angles: &[f64; LANES]) {
+    fn rotate(q: &mut [[f64; LANES]; 4], v: [f64; 3], angles: &[f64; LANES]) {
         for c in 0..LANES {
             let (sine, cosine) = Real::sin_cos(angles[c]);
             let factor = [cosine, sine * v[0], sine * v[1], sine * v[2]];

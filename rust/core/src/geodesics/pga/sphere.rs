@@ -7,7 +7,7 @@
 //! four.
 
 use super::descent::{Found, descent};
-use super::objective::{Objective, Shape, by_shape, place, scaled_to_one, value};
+use super::objective::{Objective, Shape, by_shape, project, scaled_to_one, value};
 use super::samples::{LANES, Quad, Samples, dot};
 use crate::eigen::eigenvectors;
 use crate::parallel::{self, Interrupt};
@@ -213,7 +213,7 @@ multiversion! {
         for (((w, x), y), z) in w.iter().zip(x).zip(y).zip(z) {
             for c in 0..LANES {
                 let u = [x[c], y[c], z[c]];
-                let (p, sine, f) = place([w[c], x[c], y[c], z[c]], v);
+                let (p, sine, f) = project([w[c], x[c], y[c], z[c]], v);
                 let r = dot(u, u).sqrt();
                 let bend = S::bend(w[c], r);
                 let near = S::CONE & (p.abs() >= r * cosine);
