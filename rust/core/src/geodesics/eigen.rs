@@ -1,9 +1,9 @@
-//! Eigenvectors of small symmetric matrices, by Jacobi's rotations.
+//! Eigenvectors of small symmetric matrices, by Jacobi's method.
 
-/// Sweeps at most; each one squares what is left beside the diagonal.
+/// Largest number of sweeps; each one squares the remaining off-diagonal elements.
 const SWEEPS: usize = 30;
 
-/// Turns `matrix` until it is diagonal; `turn` hears of each rotation of two rows.
+/// Rotates `matrix` until it is diagonal; calls `rotate` for each rotation of two rows.
 fn diagonalise<const N: usize>(matrix: &mut [[f64; N]; N], mut rotate: impl FnMut(usize, usize, f64, f64)) {
     for _ in 0..SWEEPS {
         let mut rotated = false;
@@ -39,7 +39,7 @@ fn rotate_rows<const N: usize>(matrix: &mut [[f64; N]; N], p: usize, q: usize, c
     }
 }
 
-/// Eigenvalues, the least first.
+/// Eigenvalues in ascending order.
 pub(super) fn values<const N: usize>(mut matrix: [[f64; N]; N]) -> [f64; N] {
     diagonalise(&mut matrix, |_, _, _, _| ());
     let mut values: [f64; N] = std::array::from_fn(|i| matrix[i][i]);
@@ -47,7 +47,7 @@ pub(super) fn values<const N: usize>(mut matrix: [[f64; N]; N]) -> [f64; N] {
     values
 }
 
-/// Eigenvectors, that of the least eigenvalue first; their largest component is positive.
+/// Eigenvectors in ascending order of their eigenvalues; their largest component is positive.
 pub(super) fn vectors<const N: usize>(mut matrix: [[f64; N]; N]) -> [[f64; N]; N] {
     let mut vectors: [[f64; N]; N] =
         std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));

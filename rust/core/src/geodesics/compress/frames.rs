@@ -1,28 +1,32 @@
 //! Frames of principal geodesic coordinates: the centre of a joint's motion, and its axes in order of importance.
 //!
-//! Two for each joint. The first are the principal geodesics of the squared sine: the point and the geodesic through it that
-//! leave the least mean `sin² d`, which are the main eigenvector of `Σ q qᵀ` and the great circle through the first two;
-//! the axis that does so for what is left, an eigenvector of `Σ u uᵀ` over its samples `(w, u)`; and the axis orthogonal to
-//! both. They exist whether or not there is a unique mean. The second is for joints of two degrees of freedom, whatever
-//! their angles: where `q = c exp(s₁ v₁) exp(s₂ v₂)`, the vectors `l = R(c) v₁` and `v₂` keep `l · R(q) v₂ = 0` in every
-//! frame, so `l` and `v₂` are sought that leave the least mean square of it.
+//! There are two frames per joint.
+//!
+//! The first consists of the principal geodesics of the squared sine. The centre and the first geodesic minimise the
+//! mean `sin² d`: the main eigenvector of `Σ q qᵀ` and the great circle through the first two. The second axis does
+//! so for the residuals: an eigenvector of `Σ u uᵀ` over the samples `(w, u)`. The third axis is orthogonal to both.
+//! They exist whether or not there is a unique mean.
+//!
+//! The second frame is for joints of two degrees of freedom, for any range of angles. If `q = c exp(s₁ v₁) exp(s₂
+//! v₂)`, the vectors `l = R(c) v₁` and `v₂` satisfy `l · R(q) v₂ = 0` in every frame. So `l` and `v₂` are the vectors
+//! that minimise the mean square of this product.
 
 use crate::geodesics::eigen::vectors;
 use crate::parallel::{self, Interrupt};
 use crate::rotations::quaternion::{between, is_missing, product, rotate, unit};
 use crate::{ClipView, Error, Real};
 
-/// Axes are found from about as many frames, evenly spaced.
+/// Approximate number of evenly spaced frames from which axes are computed.
 const SAMPLES: usize = 1024;
 
-/// Times that the two vectors of the second frame are improved in turns.
+/// Number of alternating improvements of the two vectors of the second frame.
 const ROUNDS: usize = 40;
 
 const IDENTITY: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
 
 type Vector = [f64; 3];
 
-/// Two frames for each joint, each a centre and the rotation that turns x, y and z into the axes.
+/// Two frames for each joint, each a centre and the rotation that takes x, y and z to the axes.
 ///
 /// A joint without valid samples has unit quaternions.
 ///
@@ -62,20 +66,20 @@ pub fn principal_frames<T: Real>(
     })
 }
 
-/// The geodesic through two orthogonal points, the second a right angle (on S³) from the first, and the next for what it leaves.
+/// The geodesic through two orthogonal points, 90° apart on S³, and the next geodesic for its residuals.
 fn geodesics(path: &[[f64; 4]], centre: [f64; 4], beside: [f64; 4]) -> [[f64; 4]; 2] {
     let [_, x, y, z] = between(centre, beside);
     let first = [x, y, z];
     let mut moments = [[0.0; 3]; 3];
     for q in path.iter().map(|&q| between(centre, q)) {
-        // The projection: (w, v·u) made unit are cosine and sine of s.
+        // Projection: the normalised (w, v·u) is (cos s, sin s).
         let along = dot3(first, [q[1], q[2], q[3]]);
         let radius = (q[0] * q[0] + along * along + f64::TINY_SQUARE).sqrt();
         let (cosine, sine) = (q[0] / radius, along / radius);
         let left = product([cosine, -sine * first[0], -sine * first[1], -sine * first[2]], q);
         add_outer(&mut moments, [left[1], left[2], left[3]]);
     }
-    // Far below all others, so that the second axis is orthogonal to the first, though nothing be left.
+    // An eigenvalue far below all others makes the second axis orthogonal to the first, even for zero residuals.
     let depth = 4.0 * path.len() as f64;
     for i in 0..3 {
         for j in 0..3 {
@@ -116,7 +120,7 @@ fn surface(path: &[[f64; 4]], centre: [f64; 4]) -> [[f64; 4]; 2] {
     let first: Vector = std::array::from_fn(|i| first[i] - inner[i] * along);
     let length = dot3(first, first).sqrt();
     if length < 0.5 {
-        // The vectors do not belong together: no such surface.
+        // The vectors are inconsistent: there is no such surface.
         return [centre, IDENTITY];
     }
     let first = first.map(|x| x / length);
@@ -158,10 +162,10 @@ fn matrix(q: [f64; 4]) -> [Vector; 3] {
     ]
 }
 
-/// The rotation that turns x and y into two orthonormal vectors, with `w ≥ 0`.
+/// The rotation that takes x and y to two orthonormal vectors, with `w ≥ 0`.
 fn rotation_to(a: Vector, b: Vector) -> [f64; 4] {
     let c = cross(a, b);
-    // Four times the products of the components; the row with the largest square has all digits.
+    // Four times the products of the components; the row with the largest square is accurate.
     let rows = [
         [1.0 + a[0] + b[1] + c[2], b[2] - c[1], c[0] - a[2], a[1] - b[0]],
         [b[2] - c[1], 1.0 + a[0] - b[1] - c[2], b[0] + a[1], c[0] + a[2]],
