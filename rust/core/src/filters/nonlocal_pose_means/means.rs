@@ -1,4 +1,4 @@
-//! The weighted means of a tile: sums per joint, settled group by group.
+//! Weighted means of a tile: sums per joint, divided by their weights group by group.
 
 use super::kernels::{self, LANE, Lags, SHIFT};
 use super::likeness::Likeness;
@@ -9,10 +9,11 @@ use crate::clip::Planes;
 use crate::rotations::quaternion::{between, log_short};
 use std::ops::Range;
 
-/// Exponent of the floor of the self-weight: a frame without likeness comes back unchanged, in float32 and float64.
+/// Exponent of the floor of the self-weight: a frame without similar candidates is returned unchanged, in float32 and
+/// float64.
 const FLOOR: f64 = -80.0;
 
-/// Sums of weighted samples, and what they are divided by.
+/// Sums of weighted samples, and their divisors.
 pub(super) struct Means<'a, T> {
     tile: &'a Tile<'a, T>,
     /// The joints that share the weights being added.
@@ -21,16 +22,17 @@ pub(super) struct Means<'a, T> {
     most: Vec<T>,
     /// Sum of the candidates' weights, per frame.
     total: Vec<T>,
-    /// Per joint, and then for the translation: sums of 3 coordinates and, with confidence, of its share of weights; when
-    /// settled, the means.
+    /// Per joint, then for the translation: sums of 3 coordinates and, with confidence, of the weights; after
+    /// division, the means.
     sums: Planes<T>,
-    /// Whether the group's sums in fixed charts hold nothing yet but what is left over in memory.
+    /// Whether the group's sums in fixed charts still hold stale memory.
     fresh: bool,
-    /// With confidence: per joint (fixed chart) and translation, the samples times their confidence, and it.
+    /// With confidence: per joint (fixed chart) and translation, the samples times their confidence, and the
+    /// confidence.
     trusted: Option<Planes<T>>,
 }
 
-/// Planes per joint: 3 coordinates, and the share of weights.
+/// Planes per joint: 3 coordinates, and the sum of weights.
 const PER_JOINT: usize = 4;
 
 impl<'a, T: Real> Means<'a, T> {
@@ -71,7 +73,7 @@ impl<'a, T: Real> Means<'a, T> {
         }
     }
 
-    /// Starts with the joints of a group, which share weights.
+    /// Starts the joints of a group, which share weights.
     pub(super) fn begin(&mut self, group: Range<usize>) {
         self.group = group;
         self.most.fill(T::ZERO);
@@ -90,22 +92,22 @@ impl<'a, T: Real> Means<'a, T> {
         }
     }
 
-    /// Gives the memory of the sums back.
+    /// Returns the memory of the sums.
     pub(super) fn into_sums(self) -> Planes<T> {
         self.sums
     }
 
-    /// The translation, if the group takes it along.
+    /// The translation, if the group includes it.
     fn moved(&self) -> Option<&'a Planes<T>> {
         self.tile.translation.as_ref().filter(|_| self.group.start == 0)
     }
 
-    /// Notes one lag's weights: their largest and their sum.
+    /// Updates the largest weight and the sum of weights with those of one lag.
     pub(super) fn note(&mut self, weights: &[T]) {
         kernels::note_weights(&mut self.most, &mut self.total, weights);
     }
 
-    /// What has a fixed chart: its index among the sums, and the planes of its samples.
+    /// Joints and translation with a fixed chart: their index among the sums, and the planes of their samples.
     fn fixed(&self) -> Vec<(usize, [&'a [T]; 3])> {
         let tile = self.tile;
         let joints = self.group.clone().filter(|&joint| tile.clip.paths.charts[joint] != JointChart::Local);
@@ -137,9 +139,9 @@ impl<'a, T: Real> Means<'a, T> {
         self.fresh = false;
     }
 
-    /// Adds the samples of pairs that were just weighed, for joints in the local chart.
+    /// Adds the samples of the pairs weighted last, for joints in the local chart.
     ///
-    /// A pair's half rotation vector is the same at either of its frames, up to its sign.
+    /// A pair's half rotation vector is the same at both of its frames, up to its sign.
     pub(super) fn add_local(&mut self, likeness: &Likeness<'_, T>, piece: &Piece, lag: usize) {
         let tile = self.tile;
         for joint in self.group.clone().filter(|&joint| tile.clip.paths.charts[joint] == JointChart::Local) {
@@ -168,7 +170,7 @@ impl<'a, T: Real> Means<'a, T> {
         }
     }
 
-    /// Adds one candidate, which stands at a column of the planes, to one frame of the tile.
+    /// Adds one candidate, at a column of the planes, to one frame of the tile.
     pub(super) fn add_one(&mut self, frame: usize, candidate: usize, weight: T) {
         let tile = self.tile;
         self.most[frame] = self.most[frame].max(weight);
@@ -212,7 +214,8 @@ impl<'a, T: Real> Means<'a, T> {
         self.sums.row_mut(row + 3)[frame] += weight;
     }
 
-    /// Divides the sums of the group by their weights: means in the chart, or about the sample in the local chart.
+    /// Divides the sums of the group by their weights: means in the chart, or relative to the sample in the local
+    /// chart.
     pub(super) fn settle(&mut self) {
         let tile = self.tile;
         let floor = T::from_f64(SHIFT + FLOOR).exp();
@@ -243,14 +246,14 @@ impl<'a, T: Real> Means<'a, T> {
         }
     }
 
-    /// Writes the settled means to `out`, `(frames, joints, 4)`, and to `moved`, `(frames, 3)`.
+    /// Writes the means to `out`, `(frames, joints, 4)`, and to `moved`, `(frames, 3)`.
     ///
-    /// Returns whether the sign of a rotation turns from one frame to the next.
+    /// Returns whether the sign of a rotation changes from one frame to the next.
     pub(super) fn store(&self, out: &mut [T], moved: &mut [T], rows: &mut [[T; 4]]) -> bool {
         let tile = self.tile;
         let joints = tile.rows.len();
         let (samples, _) = out.as_chunks_mut::<4>();
-        // Rows are put together in a buffer that stays in the cache, and then written once, in order.
+        // Rows are assembled in a buffer that stays in the cache, and then written once, in order.
         let mut before: Option<Vec<[T; 4]>> = None;
         let mut turned = false;
         for (chunk, out) in samples.chunks_mut(LANE * joints).enumerate() {

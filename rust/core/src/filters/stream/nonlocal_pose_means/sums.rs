@@ -1,4 +1,4 @@
-//! From how far the candidates are to their mean.
+//! From patch distances of the candidates to their mean.
 
 use super::Means;
 use super::kernels::{add_own, lead_to, move_from, move_in_chart, note, turn_to, weigh};
@@ -9,7 +9,7 @@ use crate::filters::stream::pose::Pose;
 /// Exponent of the floor of the self-weight, as in the filter of the whole clip.
 const FLOOR: f64 = -80.0;
 
-/// Sums over the candidates, planes over the joints.
+/// Sums over the candidates, as planes over the joints.
 pub(super) struct Sums {
     weights: Vec<f64>,
     most: Vec<f64>,
@@ -25,7 +25,7 @@ impl Sums {
 }
 
 impl Means {
-    /// Sums the weights of candidates, and where they lie as seen from the frame that is filtered.
+    /// Sums the weights of candidates, and their displacements from the filtered frame.
     pub(super) fn sum(&mut self) {
         let Reach { ahead, after, .. } = self.reach;
         let columns = self.columns();
@@ -55,7 +55,7 @@ impl Means {
         }
     }
 
-    /// Writes the mean, with the weight of the frame itself.
+    /// Writes the mean, including the frame itself with its self-weight.
     pub(super) fn mean(&mut self, out: &mut Pose) {
         let Self { frames, sums: Sums { most, total, turn, .. }, local, .. } = self;
         let [a, b, c, d, trust] = frames.ago(self.reach.ahead + self.reach.after);
