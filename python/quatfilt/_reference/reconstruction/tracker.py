@@ -96,17 +96,17 @@ class Search:
         how = self.how
         every = self.poses.candidates(history(how), how.stride)
         graph = self.poses.graph
-        trusted = False
+        kept = False
         if graph is not None and self.since < how.refresh:
             found, squares = self._among(self._around(every, graph), state, observations)
-            trusted = len(found) == how.neighbors and (
+            kept = len(found) == how.neighbors and (
                 math.isinf(how.ratio) or math.sqrt(squares[-1]) <= how.ratio * self.least
             )
-        if not trusted:
+        if not kept:
             found, squares = self._among(every, state, observations)
         last = math.sqrt(squares[-1])
-        self.least = min(self.least, last) if trusted else last
-        self.since = self.since + 1 if trusted else 0
+        self.least = min(self.least, last) if kept else last
+        self.since = self.since + 1 if kept else 0
         self.before = found
         return found
 

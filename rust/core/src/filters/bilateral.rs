@@ -12,7 +12,7 @@
 //! r)`, and from lag to lag `S` grows by one increment.
 
 pub use super::local::Translation;
-use super::local::{self, Local, Way};
+use super::local::{self, Increments, Local};
 use crate::clip::Planes;
 use crate::error::check_length;
 use crate::parallel::Interrupt;
@@ -97,7 +97,7 @@ impl<T: Real> Local<T> for Bilateral {
         joint: usize,
         frames: usize,
         q: [&[T]; 4],
-        ways: &mut [Way<'_, T>],
+        paths: &mut [Increments<'_, T>],
         spare: &mut Planes<T>,
     ) {
         let sigma = self.sigma_angle[joint];
@@ -107,8 +107,8 @@ impl<T: Real> Local<T> for Bilateral {
         let [weights, total, mut reaches @ ..] = spare.rows_mut::<8>(0);
         let total = &mut total[..frames];
         total.fill(T::ONE);
-        for (way, reach) in ways.iter_mut().zip(reaches.chunks_exact_mut(3)) {
-            for (moves, reach) in way.moves.iter_mut().zip(reach) {
+        for (path, reach) in paths.iter_mut().zip(reaches.chunks_exact_mut(3)) {
+            for (moves, reach) in path.moves.iter_mut().zip(reach) {
                 moves.fill(T::ZERO);
                 reach.fill(T::ZERO);
             }
@@ -128,8 +128,8 @@ impl<T: Real> Local<T> for Bilateral {
             } else {
                 add_weights(&weights[..frames], total);
             }
-            for (way, reach) in ways.iter_mut().zip(reaches.chunks_exact_mut(3)) {
-                for ((steps, moves), reach) in way.steps.iter().zip(&mut way.moves).zip(reach) {
+            for (path, reach) in paths.iter_mut().zip(reaches.chunks_exact_mut(3)) {
+                for ((steps, moves), reach) in path.steps.iter().zip(&mut path.moves).zip(reach) {
                     lengthen(&mut reach[..2 * self.radius + frames - lag], &steps[lag - 1..]);
                     let (reach, moves) = (&reach[first..first + pairs], &mut moves[..frames]);
                     if ahead {
@@ -140,8 +140,8 @@ impl<T: Real> Local<T> for Bilateral {
                 }
             }
         }
-        for way in ways {
-            for moves in &mut way.moves {
+        for path in paths {
+            for moves in &mut path.moves {
                 divide(&mut moves[..frames], total);
             }
         }

@@ -27,7 +27,11 @@ const TILE: usize = 8 * 1024;
 ///
 /// # Errors
 /// [`Error::Length`] if the lengths of slices do not agree.
-pub fn trusted<T: Real>(q: ClipView<'_, T>, confidence: &[T], out: ClipMut<'_, T>) -> Result<(), Error> {
+pub fn pulled_by_confidence<T: Real>(
+    q: ClipView<'_, T>,
+    confidence: &[T],
+    out: ClipMut<'_, T>,
+) -> Result<(), Error> {
     let (frames, joints) = (q.frames(), q.joints());
     let out = out.into_data();
     check_length("out", q.data().len(), out.len())?;
@@ -49,12 +53,12 @@ pub fn trusted<T: Real>(q: ClipView<'_, T>, confidence: &[T], out: ClipMut<'_, T
     parallel::for_each(tiles, confidence.len() * 20, |tile, out: &mut [T]| {
         for (i, sample) in out.chunks_exact_mut(4).enumerate() {
             let at = tile * length + i;
-            let trust = confidence[at].to_f64();
-            if trust > 0.0 && trust < 1.0 {
+            let c = confidence[at].to_f64();
+            if c > 0.0 && c < 1.0 {
                 let (frame, joint) = (at / joints, at % joints);
                 let own = unit(path.at(frame, joint).map(T::to_f64));
                 let mean = surroundings(path, confidence, frame, joint);
-                sample.copy_from_slice(&geodesic(own, mean.unwrap_or(own), 1.0 - trust).map(T::from_f64));
+                sample.copy_from_slice(&geodesic(own, mean.unwrap_or(own), 1.0 - c).map(T::from_f64));
             }
         }
         Ok(())
@@ -65,15 +69,15 @@ pub fn trusted<T: Real>(q: ClipView<'_, T>, confidence: &[T], out: ClipMut<'_, T
 /// The clip with NaN where the confidence is 0, in joints with confidence in at least one frame.
 fn known<T: Real>(q: ClipView<'_, T>, confidence: &[T]) -> Vec<T> {
     let joints = q.joints();
-    let mut trusted = vec![false; joints];
+    let mut has_confidence = vec![false; joints];
     for row in confidence.chunks_exact(joints) {
-        for (trusted, &confidence) in trusted.iter_mut().zip(row) {
-            *trusted |= confidence > T::ZERO;
+        for (has_confidence, &confidence) in has_confidence.iter_mut().zip(row) {
+            *has_confidence |= confidence > T::ZERO;
         }
     }
     let mut known = q.data().to_vec();
     for (at, sample) in known.chunks_exact_mut(4).enumerate() {
-        if confidence[at] == T::ZERO && trusted[at % joints] {
+        if confidence[at] == T::ZERO && has_confidence[at % joints] {
             sample.fill(T::nan());
         }
     }

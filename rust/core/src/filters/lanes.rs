@@ -33,7 +33,7 @@ impl<T: Real> Group<'_, T> {
     }
 
     /// Reads the quaternions of a frame, of any length, and their confidences; lanes without a joint are unchanged.
-    pub(super) fn load(&self, frame: usize, q: &mut [Lane; 4], trust: &mut Lane) {
+    pub(super) fn load(&self, frame: usize, q: &mut [Lane; 4], confidences: &mut Lane) {
         let at = frame * self.clip.joints() + self.first;
         let (samples, _) = self.clip.data().as_chunks::<4>();
         for (lane, sample) in samples[at..at + self.joints].iter().enumerate() {
@@ -42,8 +42,8 @@ impl<T: Real> Group<'_, T> {
             }
         }
         if let Some(confidence) = self.confidence {
-            for (trust, confidence) in trust.iter_mut().zip(&confidence[at..at + self.joints]) {
-                *trust = confidence.to_f64();
+            for (out, confidence) in confidences.iter_mut().zip(&confidence[at..at + self.joints]) {
+                *out = confidence.to_f64();
             }
         }
     }

@@ -42,14 +42,14 @@ pub(super) trait Local<T: Real>: Sync {
         joint: usize,
         frames: usize,
         q: [&[T]; 4],
-        ways: &mut [Way<'_, T>],
-        spare: &mut Planes<T>,
+        paths: &mut [Increments<'_, T>],
+        scratch: &mut Planes<T>,
     );
 }
 
 /// The increments of a path in three coordinates: of a joint relative to itself, or of the translation.
 #[derive(Debug)]
-pub(super) struct Way<'a, T> {
+pub(super) struct Increments<'a, T> {
     /// Increments from each frame to the next, starting `radius` frames before the tile.
     pub(super) steps: [&'a [T]; 3],
     /// Displacements of the frames of the tile, to be written; with padding up to a multiple of [`LANE`].
@@ -71,7 +71,7 @@ struct Buffers<T> {
     joints: Planes<T>,
     steps: Planes<T>,
     moved: Planes<T>,
-    spare: Planes<T>,
+    scratch: Planes<T>,
     rows: Vec<[T; 4]>,
 }
 
@@ -149,16 +149,16 @@ fn pass<T: Real>(
     let mut moved = moved.chunks_mut((length * columns).max(1));
     let tiles: Vec<(&mut [T], &mut [T])> =
         out.chunks_mut(length * joints * 4).map(|out| (out, moved.next().unwrap_or_default())).collect();
-    let spare: Mutex<Vec<Buffers<T>>> = Mutex::default();
+    let pool: Mutex<Vec<Buffers<T>>> = Mutex::default();
     parallel::for_each(tiles, frames * joints * filter.nanoseconds(), |index, (out, moved)| {
-        let kept = spare.lock().map_or(None, |mut spare| spare.pop());
+        let kept = pool.lock().map_or(None, |mut pool| pool.pop());
         let mut buffers = kept.unwrap_or_default();
         let first = index * length;
         let own = first..(first + length).min(frames);
         let tile = Tile { filter, extended: &extended, translation, boundary, own };
         tile.filter(out, moved, &mut buffers, interrupt)?;
-        if let Ok(mut spare) = spare.lock() {
-            spare.push(buffers);
+        if let Ok(mut pool) = pool.lock() {
+            pool.push(buffers);
         }
         Ok(())
     })
@@ -185,7 +185,7 @@ impl<T: Real, F: Local<T>> Tile<'_, T, F> {
         let frames = self.own.len();
         let padded = frames.next_multiple_of(LANE);
         let length = padded + 2 * self.filter.radius();
-        let Buffers { joints: planes, steps, moved: positions, spare, rows } = buffers;
+        let Buffers { joints: planes, steps, moved: positions, scratch, rows } = buffers;
         planes.reshape(joints * PER_JOINT, length);
         steps.reshape(6, length);
         positions.reshape(6, length);
@@ -200,20 +200,20 @@ impl<T: Real, F: Local<T>> Tile<'_, T, F> {
             let q = [&*w, &*x, &*y, &*z];
             let [a, b, c, along_steps @ ..] = steps.rows_mut::<6>(0);
             increments(q, a, b, c);
-            let way = Way { steps: [&*a, &*b, &*c], moves: moves.map(|moves| &mut moves[..padded]) };
+            let path = Increments { steps: [&*a, &*b, &*c], moves: moves.map(|moves| &mut moves[..padded]) };
             if joint == 0 && along {
                 let [px, py, pz, along_moves @ ..] = positions.rows_mut::<6>(0);
                 let mut along_steps = along_steps;
                 for (steps, positions) in along_steps.iter_mut().zip([&*px, &*py, &*pz]) {
                     differences(positions, steps);
                 }
-                let translation = Way {
+                let translation = Increments {
                     steps: along_steps.map(|steps| &*steps),
                     moves: along_moves.map(|moves| &mut moves[..padded]),
                 };
-                self.filter.moves(joint, frames, q, &mut [way, translation], spare);
+                self.filter.moves(joint, frames, q, &mut [path, translation], scratch);
             } else {
-                self.filter.moves(joint, frames, q, &mut [way], spare);
+                self.filter.moves(joint, frames, q, &mut [path], scratch);
             }
         }
         self.store(planes, rows, out);

@@ -95,7 +95,7 @@ impl OneEuro {
         records.clear();
         records.resize(frames, Record::STILL);
         for (frame, record) in records.iter_mut().enumerate() {
-            group.load(frame, &mut record.rotation, &mut record.trust);
+            group.load(frame, &mut record.rotation, &mut record.confidence);
         }
         let cutoffs = Cutoffs {
             least: group.lane(&self.min_cutoff),
@@ -151,7 +151,7 @@ pub(super) struct Record {
     /// The sample, of any length, and then the result.
     pub(super) rotation: [Lane; 4],
     /// Confidence of the sample.
-    pub(super) trust: Lane,
+    pub(super) confidence: Lane,
     /// The fraction of the displacement to the sample by which the result moved.
     share: Lane,
 }
@@ -160,7 +160,7 @@ impl Record {
     /// A constant sample of each joint at the identity, with confidence.
     pub(super) const STILL: Self = Self {
         rotation: [[1.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]],
-        trust: [1.0; LANES],
+        confidence: [1.0; LANES],
         share: [0.0; LANES],
     };
 }
@@ -192,21 +192,21 @@ multiversion! {
         for record in records {
             let mut after = *record;
             for i in 0..LANES {
-                let (sample, trust) = (unit(of_lane(&after.rotation, i)), after.trust[i]);
+                let (sample, confidence) = (unit(of_lane(&after.rotation, i)), after.confidence[i]);
                 let (before, velocity) = (of_lane(&now.result, i), of_lane(&now.velocity, i));
-                let measured = trust > 0.0;
+                let measured = confidence > 0.0;
                 let begun = now.elapsed[i] > 0.0;
                 let elapsed = if begun { now.elapsed[i] } else { 1.0 };
                 let last = of_lane(&now.sample, i);
                 let turned = scaled(log_short(between(last, sample)), 2.0);
-                let follows = if begun { trust * low_pass(cutoffs.derivative[i], elapsed) } else { 0.0 };
+                let follows = if begun { confidence * low_pass(cutoffs.derivative[i], elapsed) } else { 0.0 };
                 let velocity = [
                     velocity[0] + follows * (turned[0] / elapsed - velocity[0]),
                     velocity[1] + follows * (turned[1] / elapsed - velocity[1]),
                     velocity[2] + follows * (turned[2] / elapsed - velocity[2]),
                 ];
                 let speed = (velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2]).sqrt();
-                let share = trust * low_pass(cutoffs.least[i] + cutoffs.beta[i] * speed, elapsed);
+                let share = confidence * low_pass(cutoffs.least[i] + cutoffs.beta[i] * speed, elapsed);
                 let moved = product(before, exp_one(scaled(log_short(between(before, sample)), share)));
                 // Before its first sample a joint is at its sample.
                 let result = select(begun, select(measured, moved, before), sample);

@@ -9,7 +9,7 @@
 //! ```
 
 pub use super::local::Translation;
-use super::local::{self, Local, Way};
+use super::local::{self, Increments, Local};
 use super::samples::LANE;
 use crate::clip::Planes;
 use crate::parallel::Interrupt;
@@ -83,9 +83,9 @@ impl<T: Real> Local<T> for Mask<T> {
         20 + self.coefficients.len()
     }
 
-    fn moves(&self, _: usize, _: usize, _: [&[T]; 4], ways: &mut [Way<'_, T>], _: &mut Planes<T>) {
-        for way in ways {
-            for (steps, moves) in way.steps.into_iter().zip(&mut way.moves) {
+    fn moves(&self, _: usize, _: usize, _: [&[T]; 4], paths: &mut [Increments<'_, T>], _: &mut Planes<T>) {
+        for path in paths {
+            for (steps, moves) in path.steps.into_iter().zip(&mut path.moves) {
                 weighted_sums(steps, &self.coefficients, moves);
             }
         }

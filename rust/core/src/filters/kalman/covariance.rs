@@ -51,19 +51,19 @@ impl Covariance {
     /// Gains of a measurement of the pose with the variance `variance / confidence`: the corrections of pose and
     /// velocity per unit of innovation.
     #[inline(always)]
-    pub(super) fn gains(self, variance: f64, trust: f64) -> [f64; 2] {
-        let total = trust * self.pose + variance;
-        [trust * self.pose / total, trust * self.cross / total]
+    pub(super) fn gains(self, variance: f64, confidence: f64) -> [f64; 2] {
+        let total = confidence * self.pose + variance;
+        [confidence * self.pose / total, confidence * self.cross / total]
     }
 
     /// Covariance after a measurement of the pose; confidence 0 changes nothing.
     #[inline(always)]
-    pub(super) fn updated(self, variance: f64, trust: f64) -> Self {
-        let total = trust * self.pose + variance;
+    pub(super) fn updated(self, variance: f64, confidence: f64) -> Self {
+        let total = confidence * self.pose + variance;
         Self {
             pose: self.pose * variance / total,
             cross: self.cross * variance / total,
-            velocity: (trust * self.determinant + self.velocity * variance) / total,
+            velocity: (confidence * self.determinant + self.velocity * variance) / total,
             determinant: self.determinant * variance / total,
         }
     }

@@ -76,7 +76,7 @@ impl Kalman {
             records.clear();
             records.resize(frames, Record::STILL);
             for (frame, record) in records.iter_mut().enumerate() {
-                group.load(frame, &mut record.rotation, &mut record.trust);
+                group.load(frame, &mut record.rotation, &mut record.confidence);
             }
             let variances = Variances {
                 process: group.lane(&self.process_noise).map(|noise| noise * noise),

@@ -3,7 +3,7 @@
 //! P. Craven and G. Wahba, "Smoothing noisy data with spline functions": generalised cross-validation.
 
 use super::forward;
-use super::rotations::{self, Later, Record, Variances, square, way_between};
+use super::rotations::{self, Later, Record, Variances, displacement_between, square};
 use super::vectors;
 use crate::error::check_length;
 use crate::filters::lanes::{LANES, Lane, of_lane, select, set_lane};
@@ -141,8 +141,9 @@ pub fn process_noise<T: Real>(
     parallel::map(measurement_noise.to_vec(), nanoseconds, |joint, noise| {
         let samples: Vec<([f64; 4], f64)> = (0..frames)
             .map(|frame| {
-                let trust = confidence.map_or(1.0, |confidence| confidence[frame * joints + joint].to_f64());
-                (unit(clip.at(frame, joint).map(T::to_f64)), trust)
+                let confidence =
+                    confidence.map_or(1.0, |confidence| confidence[frame * joints + joint].to_f64());
+                (unit(clip.at(frame, joint).map(T::to_f64)), confidence)
             })
             .collect();
         let mut scores = Scores::default();
@@ -152,7 +153,7 @@ pub fn process_noise<T: Real>(
                 judge(samples, noise * noise, first, &mut records, &mut scores, interrupt)?;
             }
         }
-        let measured = samples.iter().filter(|(_, trust)| *trust > 0.0).count();
+        let measured = samples.iter().filter(|(_, confidence)| *confidence > 0.0).count();
         Ok(scores.best(measured, lookahead).sqrt() * noise)
     })
 }
@@ -167,7 +168,7 @@ fn judge(
     interrupt: &Interrupt,
 ) -> Result<(), Error> {
     records.clear();
-    records.extend(samples.iter().map(|(sample, trust)| Record::alike(*sample, *trust)));
+    records.extend(samples.iter().map(|(sample, confidence)| Record::alike(*sample, *confidence)));
     let variances = Variances {
         process: std::array::from_fn(|i| CANDIDATES[first + i] * variance),
         measurement: [variance; LANES],
@@ -196,14 +197,14 @@ multiversion! {
     ) {
         let (mut distances, mut own) = ([0.0; LANES], [0.0; LANES]);
         let mut smooth = [[0.0; LANES]; 3];
-        for (index, ((sample, trust), record)) in samples.iter().zip(records).rev().enumerate() {
+        for (index, ((sample, confidence), record)) in samples.iter().zip(records).rev().enumerate() {
             for i in 0..LANES {
                 let known = record.covariance(i);
                 let after = known.smoothed(of_lane(&smooth, i), variances.process[i]);
                 let better = select(index == 0, [known.pose, known.cross, known.velocity], after);
                 set_lane(&mut smooth, i, better);
-                distances[i] += trust * square(way_between(*sample, record.rotation(i)));
-                own[i] += trust * better[0] / variances.measurement[i];
+                distances[i] += confidence * square(displacement_between(*sample, record.rotation(i)));
+                own[i] += confidence * better[0] / variances.measurement[i];
             }
         }
         *residuals = distances;

@@ -32,7 +32,7 @@ pub(in crate::filters) struct Record {
     /// pose.
     pub(in crate::filters) rotation: [Lane; 4],
     /// Confidence of the sample.
-    pub(in crate::filters) trust: Lane,
+    pub(in crate::filters) confidence: Lane,
     /// Angular velocity, radians per frame, in the joint's own frame.
     velocity: [Lane; 3],
     /// Number of frames for which the velocity has continued since the forecast stopped.
@@ -44,15 +44,15 @@ impl Record {
     /// A constant sample of each joint at the identity, with confidence.
     pub(in crate::filters) const STILL: Self = Self {
         rotation: [[1.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]],
-        trust: [1.0; LANES],
+        confidence: [1.0; LANES],
         velocity: [[0.0; LANES]; 3],
         beyond: [0.0; LANES],
         covariance: [[0.0; LANES]; 4],
     };
 
     /// The same sample in all lanes.
-    pub(in crate::filters) fn alike(sample: [f64; 4], trust: f64) -> Self {
-        Self { rotation: sample.map(|x| [x; LANES]), trust: [trust; LANES], ..Self::STILL }
+    pub(in crate::filters) fn alike(sample: [f64; 4], confidence: f64) -> Self {
+        Self { rotation: sample.map(|x| [x; LANES]), confidence: [confidence; LANES], ..Self::STILL }
     }
 
     #[inline(always)]
@@ -98,7 +98,7 @@ struct Prediction {
     /// The rotation relative to which displacements are measured.
     origin: [f64; 4],
     /// The predicted displacement from there; zero unless the forecast has stopped.
-    way: [f64; 3],
+    displacement: [f64; 3],
     /// Whether the forecast has stopped.
     left: bool,
     /// Half of one frame's rotation.
@@ -109,8 +109,8 @@ struct Prediction {
 impl State {
     /// State after one sample: the pose, and an unknown velocity.
     #[inline(always)]
-    fn first(sample: [f64; 4], trust: f64, variance: f64) -> Self {
-        let covariance = Covariance::first(variance / trust, FASTEST * FASTEST);
+    fn first(sample: [f64; 4], confidence: f64, variance: f64) -> Self {
+        let covariance = Covariance::first(variance / confidence, FASTEST * FASTEST);
         Self { rotation: sample, velocity: [0.0; 3], beyond: 0.0, covariance }
     }
 
@@ -141,7 +141,7 @@ impl State {
         let frames = if left { self.beyond + 1.0 } else { 0.0 };
         Prediction {
             origin: select(left, self.rotation, moved),
-            way: scaled(self.velocity, frames),
+            displacement: scaled(self.velocity, frames),
             left,
             half_turn,
             covariance,
@@ -150,21 +150,21 @@ impl State {
 
     /// The state one frame later, and the squared innovation: the displacement from the predicted pose to the sample.
     #[inline(always)]
-    fn step(&self, sample: [f64; 4], trust: f64, process: f64, variance: f64) -> (Self, f64) {
+    fn step(&self, sample: [f64; 4], confidence: f64, process: f64, variance: f64) -> (Self, f64) {
         let expected = self.predict(process);
-        let innovation = minus(way_between(expected.origin, sample), expected.way);
+        let innovation = minus(displacement_between(expected.origin, sample), expected.displacement);
         // Kalman gains K₁, K₂; then q = q⁻ exp(K₁ν/2) and ω = transport(ω⁻ + K₂ν).
-        let [gain, velocity_gain] = expected.covariance.gains(variance, trust);
-        let corrected = plus(expected.way, gain, innovation);
+        let [gain, velocity_gain] = expected.covariance.gains(variance, confidence);
+        let corrected = plus(expected.displacement, gain, innovation);
         let half = exp_one(scaled(corrected, 0.25));
         let moved = product(expected.origin, product(half, half));
         let velocity = rotate(conjugate_one(half), plus(self.velocity, velocity_gain, innovation));
-        let measured = trust > 0.0;
+        let measured = confidence > 0.0;
         let after = Self {
             rotation: select(measured, moved, expected.origin),
             velocity: select(measured, velocity, self.velocity),
             beyond: if measured | !expected.left { 0.0 } else { self.beyond + 1.0 },
-            covariance: expected.covariance.updated(variance, trust),
+            covariance: expected.covariance.updated(variance, confidence),
         };
         (after, square(innovation))
     }
@@ -176,7 +176,7 @@ struct Better {
     /// The smoothed rotation.
     rotation: [f64; 4],
     /// The displacement to it from the rotation of the filter's state.
-    way: [f64; 3],
+    displacement: [f64; 3],
     /// Half of its rotation.
     half: [f64; 4],
     /// The smoothed velocity in the tangent space at the rotation of the filter's state.
@@ -192,25 +192,25 @@ impl Better {
     fn back(&self, measured: bool, state: &State, process: f64) -> Self {
         let expected = state.predict(process);
         // Relative to the origin of the prediction, which differs from the state after a measurement.
-        let seen = way_between(expected.origin, self.rotation);
+        let seen = displacement_between(expected.origin, self.rotation);
         let there = rotate(conjugate_one(self.half), self.velocity);
         let carried = rotate(exp_one(scaled(seen, 0.25)), there);
         let velocity = select(measured, carried, self.velocity);
-        let way = select(measured, seen, self.way);
+        let displacement = select(measured, seen, self.displacement);
         let heard = self.heard | measured;
         // Differences from the prediction, in the previous frame's coordinates; zero without a later sample.
-        let surprise = select(heard, minus(way, expected.way), [0.0; 3]);
+        let surprise = select(heard, minus(displacement, expected.displacement), [0.0; 3]);
         let change = select(heard, minus(velocity, state.velocity), [0.0; 3]);
         let surprise = select(expected.left, surprise, rotate(expected.half_turn, surprise));
         let change = select(expected.left, change, rotate(expected.half_turn, change));
         // Rauch–Tung–Striebel gains C of the filter's covariance.
         let [c11, c12, c21, c22] = state.covariance.smoother_gains(process);
-        let way = plus(plus(state.forecast(), c11, surprise), c12, change);
+        let displacement = plus(plus(state.forecast(), c11, surprise), c12, change);
         let velocity = plus(plus(state.velocity, c21, surprise), c22, change);
-        let half = exp_one(scaled(way, 0.25));
+        let half = exp_one(scaled(displacement, 0.25));
         // Without a later sample the forecast is not followed.
         let moved = product(state.rotation, product(half, half));
-        Self { rotation: select(heard, moved, state.rotation), way, half, velocity, heard }
+        Self { rotation: select(heard, moved, state.rotation), displacement, half, velocity, heard }
     }
 }
 
@@ -218,11 +218,11 @@ impl Better {
 #[derive(Debug, Clone, Copy)]
 pub(in crate::filters) struct Later {
     pub(in crate::filters) rotation: [Lane; 4],
-    way: [Lane; 3],
+    displacement: [Lane; 3],
     half: [Lane; 4],
     velocity: [Lane; 3],
     heard: [bool; LANES],
-    trust: Lane,
+    confidence: Lane,
 }
 
 impl Later {
@@ -230,11 +230,13 @@ impl Later {
     pub(in crate::filters) fn nothing(record: &Record) -> Self {
         Self {
             rotation: record.rotation,
-            way: std::array::from_fn(|c| std::array::from_fn(|i| record.velocity[c][i] * record.beyond[i])),
+            displacement: std::array::from_fn(|c| {
+                std::array::from_fn(|i| record.velocity[c][i] * record.beyond[i])
+            }),
             half: Record::STILL.rotation,
             velocity: record.velocity,
             heard: [false; LANES],
-            trust: record.trust,
+            confidence: record.confidence,
         }
     }
 
@@ -242,7 +244,7 @@ impl Later {
     fn of_lane(&self, i: usize) -> Better {
         Better {
             rotation: of_lane(&self.rotation, i),
-            way: of_lane(&self.way, i),
+            displacement: of_lane(&self.displacement, i),
             half: of_lane(&self.half, i),
             velocity: of_lane(&self.velocity, i),
             heard: self.heard[i],
@@ -252,7 +254,7 @@ impl Later {
     #[inline(always)]
     fn set_lane(&mut self, i: usize, better: Better) {
         set_lane(&mut self.rotation, i, better.rotation);
-        set_lane(&mut self.way, i, better.way);
+        set_lane(&mut self.displacement, i, better.displacement);
         set_lane(&mut self.half, i, better.half);
         set_lane(&mut self.velocity, i, better.velocity);
         self.heard[i] = better.heard;
@@ -273,9 +275,9 @@ pub(in crate::filters) struct Forecasts {
 /// Starts the filter with the first record, which holds a sample.
 pub(in crate::filters) fn begin(record: &mut Record, variances: &Variances, forecasts: &mut Forecasts) {
     for i in 0..LANES {
-        let measured = record.trust[i] > 0.0;
-        let trust = if measured { record.trust[i] } else { 1.0 };
-        record.set_state(i, State::first(unit(record.rotation(i)), trust, variances.measurement[i]));
+        let measured = record.confidence[i] > 0.0;
+        let confidence = if measured { record.confidence[i] } else { 1.0 };
+        record.set_state(i, State::first(unit(record.rotation(i)), confidence, variances.measurement[i]));
         forecasts.measured[i] = if measured { 1.0 } else { 0.0 };
     }
 }
@@ -288,15 +290,15 @@ multiversion! {
         for record in rest {
             let mut after = *record;
             for i in 0..LANES {
-                let (sample, trust) = (unit(after.rotation(i)), after.trust[i]);
+                let (sample, confidence) = (unit(after.rotation(i)), after.confidence[i]);
                 let (process, variance) = (variances.process[i], variances.measurement[i]);
-                let (state, error) = before.state(i).step(sample, trust, process, variance);
-                let measured = trust > 0.0;
+                let (state, error) = before.state(i).step(sample, confidence, process, variance);
+                let measured = confidence > 0.0;
                 // Before its first measurement a joint is at its sample.
                 let begun = forecasts.measured[i] > 0.0;
-                let first = State::first(sample, if measured { trust } else { 1.0 }, variance);
+                let first = State::first(sample, if measured { confidence } else { 1.0 }, variance);
                 after.set_state(i, State::select(begun, state, first));
-                let judging = if forecasts.measured[i] >= KNOWN { trust } else { 0.0 };
+                let judging = if forecasts.measured[i] >= KNOWN { confidence } else { 0.0 };
                 forecasts.errors[i] += judging * error;
                 forecasts.weights[i] += judging;
                 forecasts.measured[i] += if measured { 1.0 } else { 0.0 };
@@ -315,9 +317,9 @@ multiversion! {
         for record in records.iter_mut().rev() {
             let state = *record;
             for i in 0..LANES {
-                now.set_lane(i, now.of_lane(i).back(now.trust[i] > 0.0, &state.state(i), variances.process[i]));
+                now.set_lane(i, now.of_lane(i).back(now.confidence[i] > 0.0, &state.state(i), variances.process[i]));
             }
-            now.trust = state.trust;
+            now.confidence = state.confidence;
             if keep {
                 record.rotation = now.rotation;
             }
@@ -328,7 +330,7 @@ multiversion! {
 
 /// The shorter displacement between two rotations, a rotation vector in the frame of its start.
 #[inline(always)]
-pub(in crate::filters) fn way_between(start: [f64; 4], end: [f64; 4]) -> [f64; 3] {
+pub(in crate::filters) fn displacement_between(start: [f64; 4], end: [f64; 4]) -> [f64; 3] {
     scaled(log_short(between(start, end)), 2.0)
 }
 

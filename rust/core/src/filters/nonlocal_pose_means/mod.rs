@@ -22,8 +22,8 @@
 
 mod candidates;
 mod kernels;
-mod likeness;
 mod means;
+mod patch_distance;
 mod path;
 mod tile;
 
@@ -185,9 +185,8 @@ impl NonlocalPoseMeans {
         }
         // If samples of the library are missing, those of the clip need confidences too.
         let shared = confidence.is_some() || clips.iter().any(incomplete);
-        let trusting =
-            if shared && confidence.is_none() { vec![T::ONE; frames * joints] } else { Vec::new() };
-        let confidence = if shared { Some(confidence.unwrap_or(&trusting)) } else { None };
+        let certain = if shared && confidence.is_none() { vec![T::ONE; frames * joints] } else { Vec::new() };
+        let confidence = if shared { Some(confidence.unwrap_or(&certain)) } else { None };
         let library = match library {
             Some(clips) => Some(Library::new(self, clip, clips, shared, reach, &groups, interrupt)?),
             None => None,
@@ -219,16 +218,16 @@ impl NonlocalPoseMeans {
             .collect();
         let others: usize = clips.iter().map(ClipView::frames).sum();
         let work = frames * joints * (20 + 2 * (reach.back.min(frames) + reach.ahead.min(frames)) + others);
-        let spare: Mutex<Vec<Buffers<T>>> = Mutex::default();
+        let pool: Mutex<Vec<Buffers<T>>> = Mutex::default();
         let turned = parallel::map(tiles, work, |index, (out, moved_out)| {
             interrupt.check()?;
             let first = index * length;
-            let kept = spare.lock().map_or(None, |mut spare| spare.pop());
+            let kept = pool.lock().map_or(None, |mut pool| pool.pop());
             let mut buffers = kept.unwrap_or_default();
             let tile = Tile::new(&shared, first, (first + length).min(frames), &mut buffers);
             let turned = tile.filter(out, moved_out, &mut buffers, interrupt);
-            if let Ok(mut spare) = spare.lock() {
-                spare.push(buffers);
+            if let Ok(mut pool) = pool.lock() {
+                pool.push(buffers);
             }
             turned
         })?;

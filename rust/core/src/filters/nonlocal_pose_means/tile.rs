@@ -2,8 +2,8 @@
 
 use super::candidates::Library;
 use super::kernels::{self, LANE};
-use super::likeness::Likeness;
 use super::means::Means;
+use super::patch_distance::PatchDistances;
 use super::path::{JointChart, Paths};
 use super::{NonlocalPoseMeans, Reach};
 use crate::clip::Planes;
@@ -164,7 +164,9 @@ impl<'a, T: Real> Tile<'a, T> {
         for (index, group) in self.clip.filter.groups(joints).into_iter().enumerate() {
             means.begin(group.clone());
             match self.clip.filter.neighbors {
-                None => self.add_all(&mut Likeness::new(&self, group), &mut means, buffers, interrupt)?,
+                None => {
+                    self.add_all(&mut PatchDistances::new(&self, group), &mut means, buffers, interrupt)?
+                }
                 Some(count) => {
                     let scratch = &mut buffers.scratch;
                     self.add_nearest(count, index, group, &mut means, scratch, interrupt)?;
@@ -181,7 +183,7 @@ impl<'a, T: Real> Tile<'a, T> {
     /// Adds all candidates of the window, a block of lags at a time.
     fn add_all(
         &self,
-        likeness: &mut Likeness<'_, T>,
+        distances: &mut PatchDistances<'_, T>,
         means: &mut Means<'_, T>,
         buffers: &mut Buffers<T>,
         interrupt: &Interrupt,
@@ -198,7 +200,7 @@ impl<'a, T: Real> Tile<'a, T> {
                 forward.row_mut(l).fill(T::ZERO);
                 backward.row_mut(l).fill(T::ZERO);
                 for piece in self.pieces(first + l) {
-                    let weights = likeness.weights(first + l, piece.pairs.clone());
+                    let weights = distances.weights(first + l, piece.pairs.clone());
                     for (side, row) in
                         [(&piece.forward, forward.row_mut(l)), (&piece.backward, backward.row_mut(l))]
                     {
@@ -206,7 +208,7 @@ impl<'a, T: Real> Tile<'a, T> {
                             row[side.frames.clone()].copy_from_slice(&weights[side.pairs.clone()]);
                         }
                     }
-                    means.add_local(likeness, &piece, first + l);
+                    means.add_local(distances, &piece, first + l);
                 }
                 means.note(forward.row(l));
                 means.note(backward.row(l));

@@ -139,7 +139,7 @@ impl Pass {
             let [.., x, y, z] = steps;
             let sign = if later { 1.0 } else { -1.0 };
             let side = Side { sign, time, factors, squared: *squared };
-            add_ways(
+            add_displacements(
                 [a, b, c, d],
                 [p, q, r, s],
                 [x, y, z],
@@ -219,7 +219,7 @@ multiversion! {
 
 multiversion! {
     /// Extends the displacements from `q` by one increment, to `r`, and adds them with their weights.
-    fn add_ways<T: Real>(
+    fn add_displacements<T: Real>(
         q: [&[T]; 4], r: [&[T]; 4], step: [&[T]; 3], side: &Side<'_, T>,
         reach: [&mut [T]; 3], sums: [&mut [T]; 3], total: &mut [T],
     ) {

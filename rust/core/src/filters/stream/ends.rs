@@ -28,7 +28,7 @@ pub(super) struct Ends<W> {
     first: Pose,
     inner: Pose,
     last: Pose,
-    spare: Pose,
+    scratch: Pose,
     /// Whether the frames before the first have been added.
     begun: bool,
     taken: usize,
@@ -53,15 +53,26 @@ impl<W: Window> Ends<W> {
             return Err(Error::Parameter { name: "boundary", expected });
         }
         let pose = || Pose::new(joints);
-        let (first, inner, last, spare) = (pose(), pose(), pose(), pose());
-        Ok(Self { window, boundary, first, inner, last, spare, begun: false, taken: 0, given: 0, beyond: 0 })
+        let (first, inner, last, scratch) = (pose(), pose(), pose(), pose());
+        Ok(Self {
+            window,
+            boundary,
+            first,
+            inner,
+            last,
+            scratch,
+            begun: false,
+            taken: 0,
+            given: 0,
+            beyond: 0,
+        })
     }
 
     /// Adds the frames before the first one, extrapolated from the first two, and the first frame.
     fn begin(&mut self, second: Option<&Pose>) {
         for steps in (1..=self.window.reach().0).rev() {
-            extend(self.boundary, &self.first, second, steps, &mut self.spare);
-            self.window.admit(&self.spare);
+            extend(self.boundary, &self.first, second, steps, &mut self.scratch);
+            self.window.admit(&self.scratch);
         }
         self.window.admit(&self.first);
         self.begun = true;
@@ -118,8 +129,8 @@ impl<W: Window> Causal for Ends<W> {
         while !self.give(out) {
             self.beyond += 1;
             let inner = (self.taken > 1).then_some(&self.inner);
-            extend(self.boundary, &self.last, inner, self.beyond, &mut self.spare);
-            self.window.admit(&self.spare);
+            extend(self.boundary, &self.last, inner, self.beyond, &mut self.scratch);
+            self.window.admit(&self.scratch);
         }
         true
     }

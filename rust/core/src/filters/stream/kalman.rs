@@ -10,7 +10,7 @@ use crate::filters::lanes::{LANES, Lane, lanes, of_lane};
 use crate::rotations::quaternion::unit;
 
 /// Frames kept beyond those in use, so that they are moved only now and then.
-const SPARE: usize = 32;
+const MARGIN: usize = 32;
 
 impl Kalman {
     /// The filter as a stream, over poses with one joint per noise.
@@ -57,7 +57,7 @@ impl Group {
         Self {
             variances,
             forecasts: Forecasts::default(),
-            records: Vec::with_capacity(2 * reach + SPARE),
+            records: Vec::with_capacity(2 * reach + MARGIN),
             begin: [None; LANES],
             rest: Vec::with_capacity(reach),
         }
@@ -74,9 +74,9 @@ impl Group {
         for (plane, joints) in record.rotation.iter_mut().zip(pose.rotations()) {
             plane.copy_from_slice(&joints[first..first + LANES]);
         }
-        record.trust.copy_from_slice(&pose.confidence()[first..first + LANES]);
-        for (begin, trust) in self.begin.iter_mut().zip(record.trust) {
-            if begin.is_none() && trust > 0.0 {
+        record.confidence.copy_from_slice(&pose.confidence()[first..first + LANES]);
+        for (begin, confidence) in self.begin.iter_mut().zip(record.confidence) {
+            if begin.is_none() && confidence > 0.0 {
                 *begin = Some(frame);
             }
         }

@@ -133,7 +133,7 @@ impl PoseStream {
         for (index, (joint, q)) in self.joints.iter_mut().zip(pose.chunks_exact(4)).enumerate() {
             let q = of_row(q);
             if is_missing(q) {
-                self.pose.trust(index, 0.0);
+                self.pose.set_confidence(index, 0.0);
                 continue;
             }
             let q = unit(q);
@@ -144,7 +144,7 @@ impl PoseStream {
                 self.filter.appear(index, joint.taken.follow(q));
             }
             self.pose.set(index, joint.taken.follow(q));
-            self.pose.trust(index, confidence.map_or(1.0, |confidence| confidence[index]));
+            self.pose.set_confidence(index, confidence.map_or(1.0, |confidence| confidence[index]));
         }
         self.taken += 1;
         let came = self.filter.push(&self.pose, &mut self.out);

@@ -48,7 +48,7 @@ impl Causal for Follower {
             for (plane, joints) in record.rotation.iter_mut().zip(pose.rotations()) {
                 plane.copy_from_slice(&joints[first..first + LANES]);
             }
-            record.trust.copy_from_slice(&pose.confidence()[first..first + LANES]);
+            record.confidence.copy_from_slice(&pose.confidence()[first..first + LANES]);
             forward(std::slice::from_mut(&mut record), cutoffs, state);
             for lane in 0..LANES.min(out.joints() - first) {
                 out.set(first + lane, unit(of_lane(&record.rotation, lane)));

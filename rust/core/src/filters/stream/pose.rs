@@ -14,9 +14,9 @@ pub(super) fn width(joints: usize) -> usize {
 /// One value per joint as a plane; 0 for padding joints.
 pub(super) fn plane(values: impl ExactSizeIterator<Item = f64>) -> Vec<f64> {
     let mut plane: Vec<f64> = Vec::with_capacity(width(values.len()));
-    let spare = width(values.len()) - values.len();
+    let padding = width(values.len()) - values.len();
     plane.extend(values);
-    plane.extend(std::iter::repeat_n(0.0, spare));
+    plane.extend(std::iter::repeat_n(0.0, padding));
     plane
 }
 
@@ -28,7 +28,7 @@ pub(super) struct Pose {
 }
 
 /// The plane of confidences, after the quaternions.
-const TRUST: usize = 4;
+const CONFIDENCE: usize = 4;
 
 impl Pose {
     /// Identities with confidence 0.
@@ -54,7 +54,7 @@ impl Pose {
 
     /// The confidences.
     pub(super) fn confidence(&self) -> &[f64] {
-        self.planes.row(TRUST)
+        self.planes.row(CONFIDENCE)
     }
 
     /// The quaternion of a joint.
@@ -70,13 +70,13 @@ impl Pose {
     }
 
     /// Sets the confidence of a joint.
-    pub(super) fn trust(&mut self, joint: usize, confidence: f64) {
-        self.planes.row_mut(TRUST)[joint] = confidence;
+    pub(super) fn set_confidence(&mut self, joint: usize, confidence: f64) {
+        self.planes.row_mut(CONFIDENCE)[joint] = confidence;
     }
 
     /// Copies another pose.
     pub(super) fn copy_from(&mut self, other: &Self) {
-        for row in 0..=TRUST {
+        for row in 0..=CONFIDENCE {
             self.planes.row_mut(row).copy_from_slice(other.planes.row(row));
         }
     }

@@ -82,12 +82,12 @@ multiversion! {
 
 multiversion! {
     /// Updates the largest weight, and adds the weights times their confidence to the total.
-    pub(super) fn note<T: Real>(weights: &mut [T], trust: &[T], most: &mut [T], total: &mut [T]) {
+    pub(super) fn note<T: Real>(weights: &mut [T], confidence: &[T], most: &mut [T], total: &mut [T]) {
         let n = weights.len();
-        let (trust, most, total) = (&trust[..n], &mut most[..n], &mut total[..n]);
+        let (confidence, most, total) = (&confidence[..n], &mut most[..n], &mut total[..n]);
         for i in 0..n {
             most[i] = most[i].max(weights[i]);
-            weights[i] *= trust[i];
+            weights[i] *= confidence[i];
             total[i] += weights[i];
         }
     }
@@ -123,11 +123,11 @@ multiversion! {
 
 multiversion! {
     /// Adds each frame's self-weight, the largest of the others but at least `floor`, times its confidence.
-    pub(super) fn add_own<T: Real>(most: &[T], floor: T, trust: &[T], total: &mut [T]) {
+    pub(super) fn add_own<T: Real>(most: &[T], floor: T, confidence: &[T], total: &mut [T]) {
         let n = total.len();
-        let (most, trust) = (&most[..n], &trust[..n]);
+        let (most, confidence) = (&most[..n], &confidence[..n]);
         for i in 0..n {
-            total[i] += most[i].max(floor) * trust[i];
+            total[i] += most[i].max(floor) * confidence[i];
         }
     }
 }

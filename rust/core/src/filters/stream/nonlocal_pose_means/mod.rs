@@ -121,8 +121,8 @@ impl Window for Means {
     }
 
     fn admit(&mut self, pose: &Pose) {
-        let [a, b, c, d, trust] = self.frames.advance();
-        trust.copy_from_slice(pose.confidence());
+        let [a, b, c, d, confidence] = self.frames.advance();
+        confidence.copy_from_slice(pose.confidence());
         if self.local {
             for (plane, q) in [a, b, c, d].into_iter().zip(pose.rotations()) {
                 plane.copy_from_slice(q);
@@ -133,11 +133,11 @@ impl Window for Means {
         let columns = self.columns();
         let Self { frames, pairs, terms: [terms, shares], factors, local, joints, .. } = self;
         let [distances, entered] = pairs.advance();
-        let [a, b, c, d, trust] = frames.ago(0);
+        let [a, b, c, d, confidence] = frames.ago(0);
         let lags = distances.chunks_exact_mut(columns).zip(entered.chunks_exact_mut(columns));
         for (lag, (distances, entered)) in (1..).zip(lags) {
             let [p, q, r, s, other] = frames.ago(lag);
-            multiply(trust, other, shares);
+            multiply(confidence, other, shares);
             if *local {
                 turn_terms([p, q, r, s], [a, b, c, d], factors, shares, terms);
             } else {

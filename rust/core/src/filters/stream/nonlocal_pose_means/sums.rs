@@ -39,13 +39,13 @@ impl Means {
         for (candidates, before) in [(earlier, true), (later, false)] {
             weigh(&mut candidates.exponents);
             for (lag, likeness) in (1..).zip(candidates.exponents.chunks_exact(columns)) {
-                let [p, q, r, s, trust] = frames.ago(if before { now + lag } else { now - lag });
+                let [p, q, r, s, confidence] = frames.ago(if before { now + lag } else { now - lag });
                 if let [one] = *likeness {
                     weights.fill(one);
                 } else {
                     weights.copy_from_slice(likeness);
                 }
-                note(weights, trust, most, total);
+                note(weights, confidence, most, total);
                 if *local {
                     turn_to([a, b, c, d], [p, q, r, s], weights, turn.each_mut().map(|turn| &mut turn[..]));
                 } else {
@@ -58,8 +58,8 @@ impl Means {
     /// Writes the mean, including the frame itself with its self-weight.
     pub(super) fn mean(&mut self, out: &mut Pose) {
         let Self { frames, sums: Sums { most, total, turn, .. }, local, .. } = self;
-        let [a, b, c, d, trust] = frames.ago(self.reach.ahead + self.reach.after);
-        add_own(most, Real::exp(FLOOR), trust, total);
+        let [a, b, c, d, confidence] = frames.ago(self.reach.ahead + self.reach.after);
+        add_own(most, Real::exp(FLOOR), confidence, total);
         let turn = turn.each_ref().map(|turn| &turn[..]);
         if *local {
             move_from([a, b, c, d], turn, total, out.rotations_mut());

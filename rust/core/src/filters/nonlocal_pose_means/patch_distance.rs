@@ -11,7 +11,7 @@ use std::ops::Range;
 const LARGEST_FACTOR: f64 = 1e30;
 
 /// Patch distances of the joints of a group, which share weights.
-pub(super) struct Likeness<'a, T> {
+pub(super) struct PatchDistances<'a, T> {
     tile: &'a Tile<'a, T>,
     group: Range<usize>,
     /// Half rotation vectors between the frames of the last pairs, per joint in the local chart; otherwise empty.
@@ -22,10 +22,10 @@ pub(super) struct Likeness<'a, T> {
     shares: Vec<T>,
     squares: Vec<T>,
     share: Vec<T>,
-    spare: Vec<T>,
+    scratch: Vec<T>,
 }
 
-impl<'a, T: Real> Likeness<'a, T> {
+impl<'a, T: Real> PatchDistances<'a, T> {
     pub(super) fn new(tile: &'a Tile<'a, T>, group: Range<usize>) -> Self {
         let pairs = group.clone().map(|_| std::array::from_fn(|_| Vec::new())).collect();
         Self {
@@ -38,7 +38,7 @@ impl<'a, T: Real> Likeness<'a, T> {
             shares: Vec::new(),
             squares: Vec::new(),
             share: Vec::new(),
-            spare: Vec::new(),
+            scratch: Vec::new(),
         }
     }
 
@@ -75,10 +75,10 @@ impl<'a, T: Real> Likeness<'a, T> {
         }
         let window = before + after + 1;
         self.exponents.resize(pairs.len(), T::ZERO);
-        kernels::sliding_sums(&mut self.distances, &mut self.spare, window, &mut self.exponents);
+        kernels::sliding_sums(&mut self.distances, &mut self.scratch, window, &mut self.exponents);
         if weighed {
             self.entered.resize(pairs.len(), T::ZERO);
-            kernels::sliding_sums(&mut self.shares, &mut self.spare, window, &mut self.entered);
+            kernels::sliding_sums(&mut self.shares, &mut self.scratch, window, &mut self.entered);
         }
         match (self.tile.clip.filter.distance, weighed) {
             (Distance::Mean, true) => kernels::divide_by_shares(&mut self.exponents, &self.entered),
