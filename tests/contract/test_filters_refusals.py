@@ -169,6 +169,7 @@ WRONG_OPTIONS = [
 WRONG_OPTIONS_OF_DESPIKE = [
     ("radius", 1, ValueError, "expected an integer of at least 2 and at most 1000, got 1"),
     ("radius", 1001, ValueError, "expected an integer of at least 2 and at most 1000, got 1001"),
+    ("radius", "wide", ValueError, "expected 'auto' or a number of frames, got 'wide'"),
     ("radius", 3.0, TypeError, "expected an integer of at least 2 and at most 1000, got float"),
     ("threshold", 0, ValueError, f"{POSITIVE}, got 0"),
     ("threshold", math.inf, ValueError, f"{POSITIVE}, got inf"),
