@@ -34,7 +34,7 @@ class Poses(NamedTuple):
     graph : array (poses, degree) of int32 or None
         Neighbours of the poses, −1 where there are fewer.
     tables : object
-        What kernels keep from call to call; nothing depends on it.
+        Tables that kernels reuse between calls; they do not affect the result.
     """
 
     rotations: NDArray[np.float32]
@@ -127,7 +127,7 @@ def fit(poses: Poses, candidates: NDArray[np.intp], observations: Observations, 
 
 
 class State(NamedTuple):
-    """What is known of the frames before.
+    """State after the previous frame.
 
     Parameters
     ----------
@@ -216,7 +216,7 @@ def nearest(
 
 
 def root_steps(poses: Poses, examples: NDArray[np.intp], up: int) -> Floats:
-    """How the roots of examples came to their poses: step along two axes of the heading before, height, turn; `(K, 4)`."""
+    """Root displacements of examples: step along the two axes of the previous heading, height, change of heading; `(K, 4)`."""
     first, second = HORIZONTAL[up]
     here, before = (poses.translation[at].astype(np.float64) for at in (examples, examples - 1))
     angle = poses.heading[examples - 1].astype(np.float64)

@@ -1,4 +1,4 @@
-"""Where control points are, and how they move with the coordinates of a pose.
+"""Forward kinematics of the control points and its Jacobian.
 
 The coordinates `x` of a pose are three for each joint and four for the root's way. Joint `j` turns by
 `c_j exp(x_j / 2)` from its centre `c_j`, so that `x_j` is a rotation vector; the root moreover by its heading, which is that of the frame before and the turn
@@ -20,7 +20,7 @@ Floats = Reals
 """Arrays of float64, as far as the type checker follows them."""
 
 ROOT = 4
-"""Coordinates of the root's way: two of its step, its height, its turn."""
+"""Number of coordinates of the root's displacement: two of its step, its height, its change of heading."""
 
 
 class Body(NamedTuple):

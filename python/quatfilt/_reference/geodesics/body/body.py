@@ -31,7 +31,7 @@ def body_geodesics(
     most : int
         The most geodesics where `components` is 0.
     objective : {"geodesic", "squared", "chordal"}
-        What is minimised: the mean of the distance to the geodesic, of its square, or of the sum over the joints of
+        The objective: the mean of the distance to the geodesic, of its square, or of the sum over the joints of
         `1 − cos d_j`, whose nearest point is taken for this.
     tolerance : float, radians of rotation
 

@@ -39,7 +39,7 @@ def principal_geodesics(
     most : int
         The most geodesics where `components` is 0.
     objective : {"geodesic", "squared", "chordal"}
-        What is minimised: the mean of the distance `d` to the geodesic, of `d²`, or of `1 − cos d`.
+        The objective: the mean of the distance `d` to the geodesic, of `d²`, or of `1 − cos d`.
     tolerance : float, radians of rotation
 
     Returns
