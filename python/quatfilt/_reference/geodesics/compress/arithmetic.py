@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Doubles = NDArray[np.float64]
 
 ROUND = 6_755_399_441_055_744.0
-"""Adding it to a number below 2⁵¹ rounds to an integer, ties to even, which then stands in the low bits."""
+"""Adding this to a number below 2⁵¹ rounds to an integer, ties to even, which is then in the low bits."""
 
 QUARTER_TURN = (1.57079632673412561417, 6.07710050630396597660e-11, 2.02226624879595063154e-21)
 """π/2 in three parts (Cody and Waite)."""

@@ -80,7 +80,7 @@ def compress(q: Reals, frames: Reals, tolerance: Reals, quantised: bool) -> tupl
     frames : array (joints, 2, 2, 4)
         Result of `principal_frames`: two frames for each joint; the one that needs fewer coordinates is used.
     tolerance : array (joints,)
-        Largest rotation angle between a sample and what comes back, radians, above 0.
+        Largest rotation angle between a sample and its decoded value, radians, above 0.
     quantised : bool
         False: coordinates are stored as floats.
 
