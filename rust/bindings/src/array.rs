@@ -1,4 +1,4 @@
-//! NumPy arrays in and out, and the way into the core.
+//! NumPy arrays as input and output, and calls of the core.
 
 use numpy::{
     Element, PyArrayDescrMethods, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyReadwriteArrayDyn,
@@ -26,13 +26,13 @@ macro_rules! by_dtype {
 }
 pub(crate) use by_dtype;
 
-/// Whether `array` holds float32; other dtypes than the two floats are met by [`input`].
+/// Whether `array` is float32; [`input`] rejects dtypes other than the two floats.
 pub(crate) fn is_float32(array: &Bound<'_, PyAny>) -> PyResult<bool> {
     let array = array.cast::<PyUntypedArray>()?;
     Ok(array.dtype().is_equiv_to(&numpy::dtype::<f32>(array.py())))
 }
 
-/// Borrows an array that validation has made C-contiguous, aligned and native.
+/// Borrows an array; validation in Python has made it C-contiguous, aligned and native.
 pub(crate) fn input<'py, T: Element>(
     name: &str,
     array: &Bound<'py, PyAny>,
@@ -50,7 +50,7 @@ pub(crate) fn elements<'a, T: Element>(
     name: &str,
     array: &'a PyReadonlyArrayDyn<'_, T>,
 ) -> PyResult<&'a [T]> {
-    // `as_slice` would take a column-major array too.
+    // `as_slice` would accept a column-major array too.
     let slice = if array.is_c_contiguous() { array.as_slice().ok() } else { None };
     slice.ok_or_else(|| PyValueError::new_err(format!("{name}: expected a C-contiguous array")))
 }
@@ -89,7 +89,7 @@ pub(crate) fn output<'py, T: Element>(py: Python<'py>, shape: &[usize]) -> Bound
     PyArrayDyn::zeros(py, shape, false)
 }
 
-/// What a user reads where a kernel panicked.
+/// Message of the exception after a panic in a kernel.
 pub(crate) const BUG: &str = "quatfilt: a kernel failed; please report this as a bug";
 
 /// Runs `work` detached from the interpreter; errors and panics become Python exceptions.
@@ -100,7 +100,7 @@ pub(crate) fn run<R: Send>(py: Python<'_>, work: impl FnOnce() -> Result<R, Erro
     }
 }
 
-/// What Python sees of an error of the core.
+/// The Python exception for an error of the core.
 pub(crate) fn to_python(error: Error) -> PyErr {
     match error {
         Error::Interrupted => PyKeyboardInterrupt::new_err(()),
@@ -108,13 +108,13 @@ pub(crate) fn to_python(error: Error) -> PyErr {
     }
 }
 
-/// Estimated nanoseconds from which a call listens for Ctrl-C: a thread of its own costs some 50 microseconds.
+/// Estimated nanoseconds from which a call checks for Ctrl-C: the thread for it costs some 50 microseconds.
 const PATIENCE: usize = 200_000_000;
 
-/// How often a long call asks whether Ctrl-C was pressed.
+/// Interval of the checks for Ctrl-C in a long call.
 const POLL: Duration = Duration::from_millis(50);
 
-/// Runs `work` as [`run`] does; work that is estimated to take long stops at its next tile after Ctrl-C.
+/// Runs `work` as [`run`] does; work with a long estimated time stops at its next tile after Ctrl-C.
 pub(crate) fn run_interruptible<R: Send>(
     py: Python<'_>,
     nanoseconds: usize,

@@ -1,7 +1,7 @@
 //! The module `quatfilt._core`: converts arrays, detaches from the interpreter, calls the core. No arithmetic.
 //!
-//! Each function has the name and the positional arguments of its definition in `quatfilt._reference`; streams have none
-//! there, for the filter of the whole clip defines them.
+//! Each function has the name and the positional arguments of its definition in `quatfilt._reference`. Streams have
+//! no definition there: the filter of the whole clip defines them.
 
 mod array;
 mod filters;

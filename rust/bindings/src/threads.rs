@@ -1,4 +1,4 @@
-//! What the kernels run on: threads and SIMD level.
+//! Threads and SIMD level of the kernels.
 
 use pyo3::prelude::*;
 use quatfilt_core::{parallel, simd::Level};

@@ -1,4 +1,4 @@
-//! Clips as the kernels see them: borrowed `(frames, joints, 4)` arrays outside, aligned planes inside.
+//! Clips in the kernels: borrowed `(frames, joints, 4)` arrays as input and output, aligned planes inside.
 
 use crate::{Error, Real, error::check_length};
 
@@ -20,13 +20,13 @@ impl<'a, T: Real> ClipView<'a, T> {
         Ok(Self { data, frames, joints })
     }
 
-    /// How many frames.
+    /// Number of frames.
     #[must_use]
     pub fn frames(&self) -> usize {
         self.frames
     }
 
-    /// How many joints.
+    /// Number of joints.
     #[must_use]
     pub fn joints(&self) -> usize {
         self.joints
@@ -72,13 +72,13 @@ impl<'a, T: Real> ClipMut<'a, T> {
         Ok(Self { data, frames, joints })
     }
 
-    /// How many frames.
+    /// Number of frames.
     #[must_use]
     pub fn frames(&self) -> usize {
         self.frames
     }
 
-    /// How many joints.
+    /// Number of joints.
     #[must_use]
     pub fn joints(&self) -> usize {
         self.joints
@@ -91,7 +91,7 @@ impl<'a, T: Real> ClipMut<'a, T> {
     }
 }
 
-/// Bytes to which every plane is aligned: a cache line, and the widest vector.
+/// Alignment of every plane in bytes: a cache line, and the widest vector.
 const ALIGNMENT: usize = 64;
 
 /// Rows of equal length, each aligned to a cache line: the layout of every hot loop.
@@ -113,8 +113,7 @@ impl<T: Real> Planes<T> {
         planes
     }
 
-    /// Makes them `rows` planes of `length`, keeping the memory where it suffices; what they hold is then left over from
-    /// before, or 0.
+    /// Resizes to `rows` planes of `length`, and reuses the memory if it suffices; the contents are then unspecified.
     pub fn reshape(&mut self, rows: usize, length: usize) {
         let line = ALIGNMENT / size_of::<T>();
         self.stride = length.next_multiple_of(line);
@@ -127,13 +126,13 @@ impl<T: Real> Planes<T> {
         }
     }
 
-    /// How many samples a plane holds.
+    /// Number of samples per plane.
     #[must_use]
     pub fn length(&self) -> usize {
         self.length
     }
 
-    /// How many planes.
+    /// Number of planes.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.rows
@@ -154,21 +153,21 @@ impl<T: Real> Planes<T> {
         &mut self.buffer[at..at + self.length]
     }
 
-    /// Numbers from the first of a plane to the first of the next.
+    /// Distance between the first elements of two successive planes.
     #[must_use]
     pub fn stride(&self) -> usize {
         self.stride
     }
 
-    /// All planes from `row` on, with what lies between them.
+    /// All planes from `row` on, with the padding between them.
     #[must_use]
     pub fn from_row(&self, row: usize) -> &[T] {
         &self.buffer[self.start + row * self.stride..]
     }
 
-    /// `N` planes in sequence from `row`, to be written together.
+    /// `N` consecutive planes from `row` on, to be written together.
     ///
-    /// Planes beyond the last come back empty.
+    /// Planes past the last are empty.
     #[inline(always)]
     pub fn rows_mut<const N: usize>(&mut self, row: usize) -> [&mut [T]; N] {
         let at = self.start + row * self.stride;
@@ -181,7 +180,7 @@ impl<T: Real> Planes<T> {
         })
     }
 
-    /// `N` planes in sequence from `row`.
+    /// `N` consecutive planes from `row` on.
     #[inline(always)]
     #[must_use]
     pub fn rows_from<const N: usize>(&self, row: usize) -> [&[T]; N] {

@@ -3,11 +3,11 @@
 use crate::Error;
 use crate::parallel::Interrupt;
 
-/// Sweeps at most; each one squares what is left beside the diagonal.
+/// Largest number of sweeps; each one squares the remaining off-diagonal elements.
 const SWEEPS: usize = 30;
 
-/// Eigenvectors of a symmetric matrix of `n` rows, as columns, by Jacobi's rotations. `matrix` ends up with the eigenvalues on
-/// its diagonal.
+/// Eigenvectors of a symmetric matrix of `n` rows, as columns, by Jacobi's method. On return `matrix` has the
+/// eigenvalues on its diagonal.
 pub(crate) fn eigenvectors(matrix: &mut [f64], n: usize, interrupt: &Interrupt) -> Result<Vec<f64>, Error> {
     let mut vectors = vec![0.0; n * n];
     for i in 0..n {

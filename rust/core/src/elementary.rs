@@ -1,7 +1,7 @@
 //! Elementary functions that vectorise: branch-free, without libm and without fused multiply-add.
 //!
-//! A call into libm keeps a loop scalar, whatever the SIMD level. These are polynomials after argument reduction
-//! (Cody and Waite), in plain arithmetic and selects, so that a loop over a slice becomes vector code.
+//! A call of libm keeps a loop scalar at every SIMD level. These are polynomials after argument reduction (Cody and
+//! Waite), in plain arithmetic and selects, so that a loop over a slice becomes vector code.
 //!
 //! Largest errors against correctly rounded values, in units in the last place (checked by `tests/accuracy.rs`):
 //!
@@ -30,8 +30,8 @@ fn polynomial<T: Real, const N: usize>(x: T, coefficients: [T; N]) -> T {
     sum
 }
 
-/// Sine and cosine from those of the rest in `[−π/4, π/4]`, after taking away quarter turns, an `odd` number of them
-/// or one whose second bit, `upper`, is set.
+/// Sine and cosine from those of the remainder in `[−π/4, π/4]`, after subtracting multiples of 90°: an `odd` number
+/// of them, or one whose second bit, `upper`, is set.
 #[inline(always)]
 fn turn<T: Real>(odd: bool, upper: bool, sin: T, cos: T) -> (T, T) {
     let (s, c) = if odd { (cos, -sin) } else { (sin, cos) };
@@ -86,7 +86,7 @@ macro_rules! real_basics {
 
 /// Natural logarithm of a positive number that is not subnormal, to 2 units in the last place.
 ///
-/// Cephes: of the mantissa between `√½` and `√2`, a polynomial.
+/// Cephes: a polynomial of the mantissa between `√½` and `√2`.
 #[inline(always)]
 #[must_use]
 #[allow(clippy::cast_possible_wrap, clippy::cast_precision_loss, reason = "an exponent is a small integer")]
@@ -139,7 +139,7 @@ impl Real for f64 {
     fn exp(self) -> Self {
         const LN2_HIGH: f64 = 6.931_471_803_691_238_164_90e-1;
         const LN2_LOW: f64 = 1.908_214_929_270_587_700_02e-10;
-        /// Adding it rounds to an integer, which then stands in the low bits.
+        /// Adding this rounds to an integer, which is then in the low bits.
         const ROUND: f64 = 6_755_399_441_055_744.0;
         const SUBNORMAL: f64 = -708.0;
         let x = if self > SUBNORMAL { self } else { SUBNORMAL };
@@ -211,11 +211,11 @@ impl Real for f64 {
 
     #[inline(always)]
     fn atan2_nonnegative(self, x: Self) -> Self {
-        /// What `π/4` and `π/2` lack beyond their last digit.
+        /// Part of `π/4` and `π/2` beyond their last digit.
         const MORE_BITS: f64 = 6.123_233_995_736_765_886_130e-17;
         let (low, high) = if self < x.abs() { (self, x.abs()) } else { (x.abs(), self) };
         let high = if high > 0.0 { high } else { 1.0 };
-        // One select as a factor: with several the compiler computes both quotients and both polynomials.
+        // One select as a factor: with several selects the compiler computes both quotients and both polynomials.
         let far = if low > 0.66 * high { 1.0 } else { 0.0 };
         let a = (low - far * high) / (high + far * low);
         let z = a * a;

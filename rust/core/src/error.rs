@@ -1,27 +1,27 @@
-//! The one error type of the core: what memory safety and cancellation need. What a user meant is checked above.
+//! The error type of the core, for memory safety and cancellation. Arguments of users are validated in Python.
 
 use std::fmt;
 
-/// Why a kernel refused its arguments or stopped.
+/// Why a kernel rejected its arguments or stopped.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Error {
-    /// A slice has another length than the shapes say.
+    /// The length of a slice does not agree with the shapes.
     Length {
         /// The argument.
         name: &'static str,
-        /// How many elements the shapes ask for.
+        /// Number of elements according to the shapes.
         expected: usize,
-        /// How many came.
+        /// Number of elements received.
         got: usize,
     },
-    /// A parameter lies outside what the kernel can compute with.
+    /// A parameter is outside the range of the kernel.
     Parameter {
         /// The argument.
         name: &'static str,
-        /// What was expected.
+        /// The expected value.
         expected: &'static str,
     },
-    /// The caller asked the kernel to stop.
+    /// The interrupt flag was set.
     Interrupted,
 }
 
@@ -39,7 +39,7 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// Refuses a slice of another length than the shapes say.
+/// Checks the length of a slice.
 ///
 /// # Errors
 /// [`Error::Length`] if `got` differs from `expected`.

@@ -1,10 +1,10 @@
 //! The thread pool: one per process, built on first use, and rebuilt in a child after `fork`.
 //!
-//! Rayon's global pool does not survive `fork()`: a child would wait for threads that do not exist. So the pool lives
-//! in a cell keyed by the process id; in a child the parent's pool is left alone and a new one is built.
+//! Rayon's global pool does not survive `fork()`: a child would wait for threads that do not exist. So the pool is
+//! stored in a cell keyed by the process id; a child leaves the parent's pool alone and builds a new one.
 //!
-//! Work is cut into tiles whose borders do not depend on the number of threads, each tile writes its own slice, and
-//! totals are taken in the order of the tiles: results are the same for every number of threads.
+//! Work is split into tiles whose borders do not depend on the number of threads. Each tile writes its own slice, and
+//! totals are summed in the order of the tiles: results are the same for every number of threads.
 
 use crate::Error;
 use rayon::prelude::*;
@@ -12,12 +12,12 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, TryLockError};
 use std::time::{Duration, Instant};
 
-/// Below this many nanoseconds of estimated work the calling thread does it alone: waking a pool costs ten microseconds on
+/// Estimated nanoseconds below which the calling thread does the work alone. Waking a pool costs ten microseconds on
 /// a quiet machine and a hundred on a busy one, and two threads save at most half of the work.
 const SERIAL_NANOSECONDS: usize = 200_000;
 
-/// How long to wait for the pool's cell before working alone. A cell that stays locked was copied by a `fork` while
-/// another thread held it, and nobody is left to open it.
+/// Time to wait for the pool's cell before working alone. A cell that stays locked was copied by a `fork` while
+/// another thread held it, and will never be unlocked.
 const LOCK_PATIENCE: Duration = Duration::from_millis(200);
 
 struct Pool {
@@ -28,7 +28,7 @@ struct Pool {
 
 static POOL: Mutex<Option<Pool>> = Mutex::new(None);
 
-/// What `set_num_threads` asked for; 0 means it was never called.
+/// Number of threads of the last [`set_num_threads`]; 0: never called.
 static REQUESTED: AtomicUsize = AtomicUsize::new(0);
 
 /// Sets the number of threads that kernels use from now on; 0 returns to the default.
@@ -36,8 +36,8 @@ pub fn set_num_threads(threads: usize) {
     REQUESTED.store(threads, Ordering::Relaxed);
 }
 
-/// The number of threads that kernels use: what [`set_num_threads`] asked for, else `QUATFILT_NUM_THREADS`, else
-/// `RAYON_NUM_THREADS`, else the processors that this process may run on.
+/// The number of threads that kernels use: that of [`set_num_threads`], else `QUATFILT_NUM_THREADS`, else
+/// `RAYON_NUM_THREADS`, else the number of processors available to this process.
 #[must_use]
 pub fn num_threads() -> usize {
     let requested = REQUESTED.load(Ordering::Relaxed);
@@ -50,7 +50,7 @@ pub fn num_threads() -> usize {
         .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
 }
 
-/// The pool of this process with the wanted number of threads, or `None` to work alone.
+/// The pool of this process with the requested number of threads, or `None` to work alone.
 fn pool() -> Option<Arc<rayon::ThreadPool>> {
     let threads = num_threads();
     if threads < 2 {
@@ -82,13 +82,13 @@ fn pool() -> Option<Arc<rayon::ThreadPool>> {
     if let Some(before) = before
         && before.process != process
     {
-        // Its threads live in the parent only: to drop it would wait for them for ever.
+        // Its threads exist in the parent only: dropping it would wait for them forever.
         std::mem::forget(before);
     }
     Some(workers)
 }
 
-/// A flag by which a caller asks a running kernel to stop.
+/// An interrupt flag: kernels check it and stop.
 #[derive(Debug, Default)]
 pub struct Interrupt(AtomicBool);
 
@@ -99,21 +99,21 @@ impl Interrupt {
         Self(AtomicBool::new(false))
     }
 
-    /// Asks the kernel to stop at its next tile.
+    /// Sets the flag: the kernel stops at its next tile.
     pub fn set(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    /// Whether the kernel was asked to stop.
+    /// Checks the flag.
     ///
     /// # Errors
-    /// [`Error::Interrupted`] if so.
+    /// [`Error::Interrupted`] if it is set.
     pub fn check(&self) -> Result<(), Error> {
         if self.0.load(Ordering::Relaxed) { Err(Error::Interrupted) } else { Ok(()) }
     }
 }
 
-/// Runs `work(tile, item)` for every item, on the pool unless the whole is estimated to take too little time.
+/// Runs `work(tile, item)` for every item; on the pool unless the estimated time is too short.
 ///
 /// `nanoseconds` is the estimate for all items together, on one thread.
 ///
@@ -127,7 +127,7 @@ pub fn for_each<I: Send>(
     map(items, nanoseconds, work).map(|_| ())
 }
 
-/// As [`for_each`], collecting what `work` returns in the order of the items.
+/// As [`for_each`]; returns the results of `work` in the order of the items.
 ///
 /// # Errors
 /// The first error in the order of the items.
@@ -147,8 +147,8 @@ pub fn map<I: Send, R: Send>(
     }
 }
 
-/// Runs `work` inside the pool of this process, so that what it does with rayon is done by the pool's threads; directly
-/// where there is one thread only.
+/// Runs `work` inside the pool of this process, so that its rayon calls use the pool's threads; runs it directly if
+/// there is only one thread.
 pub fn install<R: Send>(work: impl FnOnce() -> R + Send) -> R {
     match pool() {
         Some(pool) => pool.install(work),

@@ -1,4 +1,4 @@
-//! float32 and float64, as the kernels are generic over them.
+//! float32 and float64 as one trait for generic kernels.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -41,12 +41,12 @@ pub trait Real:
     const EPSILON: Self;
     /// A square below which `x²` has lost digits to underflow.
     ///
-    /// Added to the square of a sine or an angle it keeps `φ / sin φ` from 0/0: the ratio is even and smooth, so that
-    /// moving both by so little does not show.
+    /// Added to the square of a sine or an angle, it avoids 0/0 in `φ / sin φ`: the ratio is even and smooth, so such
+    /// a small shift of both has no effect.
     const TINY_SQUARE: Self;
-    /// The least number whose square has all its digits. Processors take many times as long for squares of lesser ones.
+    /// The smallest number whose square has full precision. Squares of smaller ones are many times slower.
     const LEAST_SQUARED: Self;
-    /// The largest argument that [`Real::sin_cos`] reduces exactly enough.
+    /// The largest argument that [`Real::sin_cos`] reduces accurately.
     const SIN_COS_LIMIT: Self;
     /// The largest argument of [`Real::exp`].
     const EXP_LIMIT: Self;
@@ -73,7 +73,7 @@ pub trait Real:
     /// NaN.
     #[must_use]
     fn nan() -> Self;
-    /// The whole number that `self` is; 0 for negative numbers and NaN.
+    /// The integer part; 0 for negative numbers and NaN.
     #[must_use]
     fn to_count(self) -> usize;
     /// `exp(x)` for `x ≤` [`Real::EXP_LIMIT`]; exactly 0 where the result would be subnormal.
@@ -85,8 +85,8 @@ pub trait Real:
     /// The angle of the point `(x, self)` for `self ≥ 0`, in `[0, π]`; 0 at the origin.
     #[must_use]
     fn atan2_nonnegative(self, x: Self) -> Self;
-    /// The squared angle `θ²` of a rotation whose unit quaternion is the chord `√self = 2 sin(θ/4)` away from 1, for
-    /// `self` in `[0, 2]`: `(4 asin(√self / 2))²`, which has no root in it.
+    /// The squared angle `θ²` of a rotation whose unit quaternion has the chord `√self = 2 sin(θ/4)` to 1, for `self`
+    /// in `[0, 2]`: `(4 asin(√self / 2))²`, computed without a square root.
     #[must_use]
     fn square_of_angle(self) -> Self;
 

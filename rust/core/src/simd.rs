@@ -1,8 +1,8 @@
 //! Run-time SIMD dispatch: one macro that compiles a body once per level, and the one place with `unsafe`.
 //!
 //! A body is plain Rust that the compiler vectorises: elementwise loops over slices of planes. It is compiled for the
-//! baseline, for AVX2 and for AVX-512, and the processor is asked once per process which of them it can run. On other
-//! architectures the baseline already is the vector code (NEON on aarch64). Since nothing contracts `a * b + c`, the
+//! baseline, for AVX2 and for AVX-512, and the features of the processor are detected once per process. On other
+//! architectures the baseline is vector code already (NEON on aarch64). Since nothing contracts `a * b + c`, the
 //! results have the same bits at every level.
 //!
 //! `QUATFILT_SIMD=baseline|avx2|avx512` lowers the level (never raises it): for tests and for instruction counts.
@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicU8, Ordering};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Level {
-    /// What every processor of the architecture has: SSE2 on `x86_64`, NEON on aarch64.
+    /// Features of every processor of the architecture: SSE2 on `x86_64`, NEON on aarch64.
     Baseline = 0,
     /// AVX2, 256 bits.
     Avx2 = 1,
@@ -30,7 +30,7 @@ impl Level {
     /// All levels, lowest first.
     pub const ALL: [Self; 3] = [Self::Baseline, Self::Avx2, Self::Avx512];
 
-    /// The name, as `QUATFILT_SIMD` spells it.
+    /// The name, as in `QUATFILT_SIMD`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -71,7 +71,8 @@ impl Level {
         }
     }
 
-    /// Lowers the level for this process, for tests; a level the processor lacks is lowered to what it has.
+    /// Lowers the level for this process, for tests; a level that the processor lacks becomes the highest that it
+    /// has.
     #[allow(clippy::return_self_not_must_use, reason = "a setter, called for its effect")]
     pub fn set(self) -> Self {
         let level = self.min(Self::detected());

@@ -1,25 +1,26 @@
-//! What lies beyond the ends of a clip: boundary conditions, on rotations and on plain numbers.
+//! Boundary conditions of clips, on rotations and on plain numbers.
 
 use crate::rotations::quaternion::{between, exp_one, log_short, product, unit};
 use crate::{ClipView, Real};
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-/// How a clip goes on beyond its ends.
+/// Continuation of a clip beyond its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Boundary {
-    /// Time turns round at the end frame, which is not repeated: `c b a b c`.
+    /// Reflection at the end frame, which is not repeated: `c b a b c`.
     Mirror,
-    /// The angular velocity (or the slope) of the end goes on.
+    /// Constant angular velocity (or slope) of the end.
     Linear,
-    /// The end frame is held: `a a a b c`.
+    /// Repetition of the end frame: `a a a b c`.
     Nearest,
 }
 
 impl Boundary {
-    /// The frame of a clip of `frames` frames that stands at `index`, for the conditions that repeat frames.
+    /// The frame of a clip of `frames` frames at `index`, for the conditions that repeat frames.
     ///
-    /// [`Boundary::Linear`] answers as [`Boundary::Nearest`]: its frames continue from the end frame.
+    /// [`Boundary::Linear`] returns the same as [`Boundary::Nearest`]: its frames are extrapolated from the end
+    /// frame.
     #[must_use]
     pub fn source(self, index: isize, frames: usize) -> usize {
         let last = frames.saturating_sub(1);
@@ -73,19 +74,19 @@ impl<'a, T: Real> Extended<'a, T> {
         rows
     }
 
-    /// How many frames, added ones included.
+    /// Number of frames, including added ones.
     #[must_use]
     pub fn frames(&self) -> usize {
         self.clip.frames() + 2 * self.pad
     }
 
-    /// How many joints.
+    /// Number of joints.
     #[must_use]
     pub fn joints(&self) -> usize {
         self.clip.joints()
     }
 
-    /// How many frames were added at each end.
+    /// Number of frames added at each end.
     #[must_use]
     pub fn pad(&self) -> usize {
         self.pad
@@ -135,9 +136,10 @@ pub(crate) fn continued<T: Real>(end: [T; 4], inner: [T; 4], steps: usize) -> [T
     unit(product(end, exp_one(step.map(|x| x / length * angle)))).map(T::from_f64)
 }
 
-/// A row of `columns` numbers beyond or within the ends: `index` counts frames from the first one of the clip.
+/// An element of a row of `columns` values, beyond the ends if necessary: `index` counts frames from the clip's first
+/// one.
 ///
-/// [`Boundary::Linear`] continues the slope of the end if `slope` is asked for, and holds the end otherwise.
+/// [`Boundary::Linear`] extrapolates the slope of the end if `slope` is set, and repeats the end otherwise.
 #[must_use]
 pub fn extended_number<T: Real>(
     values: &[T],

@@ -2,23 +2,23 @@
 
 use std::io::Write as _;
 
-/// How many digits a number is written with.
+/// Number of digits of written numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Precision {
     /// The fewest digits that read back as the same float64.
     #[default]
     Shortest,
-    /// So many digits after the point.
+    /// This many digits after the point.
     Decimals(u8),
 }
 
-/// Integers below this have 15 digits, and every decimal of 15 digits reads back as itself.
+/// Integers below this have at most 15 digits, and every decimal of 15 digits reads back unchanged.
 const FIFTEEN_DIGITS: f64 = 1e15;
-/// Most numbers of motion files have at most six decimals, and almost all others at most ten.
+/// Most numbers in motion files have at most six decimals, and almost all others at most ten.
 const TRIED: [(f64, usize); 2] = [(1e6, 6), (1e10, 10)];
 const POWERS: [f64; 13] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12];
 
-/// Appends `value` to `out`; a value that is not finite becomes `nan`, a missing sample.
+/// Appends `value` to `out`; a value that is not finite is written as `nan`, a missing sample.
 pub(crate) fn push(out: &mut Vec<u8>, value: f64, precision: Precision) {
     if !value.is_finite() {
         out.extend_from_slice(b"nan");
@@ -33,8 +33,8 @@ pub(crate) fn push(out: &mut Vec<u8>, value: f64, precision: Precision) {
 fn push_shortest(out: &mut Vec<u8>, value: f64) {
     for (scale, decimals) in TRIED {
         let scaled = (value.abs() * scale).round();
-        // The quotient of two exact numbers is what the decimal reads back as; below 15 digits no shorter one exists
-        // but by dropping its final zeros.
+        // The quotient of two exact numbers is the value of the decimal; below 15 digits the only shorter form omits
+        // its final zeros.
         if scaled < FIFTEEN_DIGITS && (scaled / scale).to_bits() == value.abs().to_bits() {
             return push_scaled(out, value.is_sign_negative(), scaled, decimals, true);
         }

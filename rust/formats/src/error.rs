@@ -1,11 +1,11 @@
-//! What is said about a file: why it was refused, and what was repaired.
+//! Errors and notes about a file.
 
 use std::fmt;
 
-/// Why a file was refused. Whoever opened the file adds its path.
+/// Why a file was rejected. The caller adds the path.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Error {
-    /// Line of the file, counted from 1; `None` where the whole file is meant.
+    /// Line of the file, counted from 1; `None` for the whole file.
     pub line: Option<usize>,
     /// The reason, one line of text.
     pub reason: String,
@@ -29,12 +29,12 @@ impl fmt::Display for Error {
 
 impl std::error::Error for Error {}
 
-/// What was repaired or assumed while reading. A file that is read without notes was read as it stands.
+/// A repair or an assumption of a reader. A file without notes was read literally.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Note {
-    /// Line of the file, counted from 1; `None` where the whole file is meant.
+    /// Line of the file, counted from 1; `None` for the whole file.
     pub line: Option<usize>,
-    /// What was found and what was made of it, one line of text.
+    /// The problem and its repair, one line of text.
     pub text: String,
 }
 

@@ -1,12 +1,12 @@
-//! Motion-capture files in and out: text and structure only, no mathematics.
+//! Motion-capture files: text and structure only, no mathematics.
 //!
-//! A reader opens what real files hold, or refuses with one [`Error`]: line and reason. Nothing is guessed silently:
-//! what was repaired or assumed comes back as [`Note`]s with the data.
+//! A reader accepts real files, or rejects them with one [`Error`]: line and reason. It never guesses silently:
+//! repairs and assumptions are returned as [`Note`]s with the data.
 //!
-//! The rooms:
+//! The modules:
 //!
-//! - [`bvh`]: [`bvh::parse`] reads a file from bytes, [`bvh::write`] makes one;
-//! - [`acclaim`]: [`acclaim::parse_asf`] reads a skeleton, [`acclaim::parse_amc`] a motion of it.
+//! - [`bvh`]: [`bvh::parse`] reads a file from bytes, [`bvh::write`] writes one;
+//! - [`acclaim`]: [`acclaim::parse_asf`] reads a skeleton, [`acclaim::parse_amc`] one of its motions.
 //!
 //! ```
 //! use quatfilt_formats::{Precision, bvh};
@@ -29,10 +29,10 @@
 //! # Ok::<(), quatfilt_formats::Error>(())
 //! ```
 //!
-//! Underneath lie lines and names (`text`), decimal text to float64 (`number`) and back (`decimal`).
+//! Internal modules: lines and names (`text`), decimal text to float64 (`number`) and back (`decimal`).
 //!
-//! Long work is split over the threads of the rayon pool that the caller is in (`ThreadPool::install`). Outside of a
-//! pool everything runs on the calling thread, so that no global pool comes to life that a `fork` would break.
+//! Long work is distributed over the threads of the caller's rayon pool (`ThreadPool::install`). Outside of a pool
+//! everything runs on the calling thread: a global pool would not survive a `fork`.
 
 pub mod acclaim;
 pub mod bvh;

@@ -1,24 +1,24 @@
 //! Decimal text to float64, correctly rounded, straight from bytes.
 //!
-//! Almost every number of a motion file has at most 15 digits, so that its digits are an integer below 2⁵³ and its
-//! power of ten at most 10²²: both are exact in float64, and one multiplication or division rounds once, to the
-//! nearest float64 (W. D. Clinger, How to read floating point numbers accurately, PLDI 1990). The few others go to
+//! Almost every number in a motion file has at most 15 digits: its digits are an integer below 2⁵³ and its power of
+//! ten is at most 10²². Both are exact in float64, and one multiplication or division rounds once, to the nearest
+//! float64 (W. D. Clinger, How to read floating point numbers accurately, PLDI 1990). The few others are parsed by
 //! the standard library.
 
 use crate::text::is_blank;
 
 const LARGEST_EXACT: u64 = 1 << 53;
-/// A u64 holds every number of 19 digits.
+/// A u64 can store every number of 19 digits.
 const MOST_DIGITS: usize = 19;
 const POWERS_OF_TEN: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
     1e19, 1e20, 1e21, 1e22,
 ];
 
-/// Reads the number with which `bytes` begins, up to a blank or the end: its value and its length in bytes.
+/// Reads the number at the start of `bytes`, up to a blank or the end: its value and its length in bytes.
 ///
-/// `nan` in any spelling, also that of Microsoft's C library (`-1.#IND`, `nan(ind)`), is NaN. `None` where the word is
-/// no number.
+/// `nan` in any spelling, also that of Microsoft's C library (`-1.#IND`, `nan(ind)`), is NaN. `None` if the word is
+/// not a number.
 #[inline]
 pub(crate) fn scan(bytes: &[u8]) -> Option<(f64, usize)> {
     let signed = matches!(bytes.first(), Some(b'-' | b'+'));
@@ -52,12 +52,12 @@ pub(crate) fn scan(bytes: &[u8]) -> Option<(f64, usize)> {
     Some((if negative { -value } else { value }, end))
 }
 
-/// The value of a word that is a number as a whole.
+/// The value of a word that is entirely a number.
 pub(crate) fn parse(word: &[u8]) -> Option<f64> {
     scan(word).filter(|&(_, length)| length == word.len()).map(|(value, _)| value)
 }
 
-/// Appends the digits from `start` on to `mantissa`, which wraps: the caller counts them.
+/// Appends the digits from `start` on to `mantissa`, which wraps; the caller counts the digits.
 #[inline]
 fn digits(bytes: &[u8], start: usize, mut mantissa: u64) -> (u64, usize) {
     let mut end = start;
@@ -72,7 +72,7 @@ fn digits(bytes: &[u8], start: usize, mut mantissa: u64) -> (u64, usize) {
     (mantissa, end)
 }
 
-/// The exponent after an `e`. Without digits the end is on a byte that is no blank, or a value past every table.
+/// The exponent after an `e`, limited to `BEYOND`, which is past every table; `BEYOND` if there are no digits.
 #[inline]
 fn power(bytes: &[u8], start: usize) -> (i64, usize) {
     const BEYOND: i64 = 100_000;

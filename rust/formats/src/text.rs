@@ -2,11 +2,11 @@
 
 use crate::error::{Error, Note};
 
-/// How much of a file is looked at to tell text from binary.
+/// Number of bytes inspected to distinguish text from binary files.
 const SNIFFED: usize = 8192;
 const BOM: &[u8] = b"\xEF\xBB\xBF";
 
-/// Refuses what is not text, and takes a byte-order mark away.
+/// Rejects binary files, and skips a byte-order mark.
 pub(crate) fn open<'a>(bytes: &'a [u8], notes: &mut Vec<Note>) -> Result<&'a [u8], Error> {
     if bytes.is_empty() {
         return Err(Error::whole("the file is empty"));
@@ -31,18 +31,18 @@ pub(crate) fn open<'a>(bytes: &'a [u8], notes: &mut Vec<Note>) -> Result<&'a [u8
     Ok(text)
 }
 
-/// Control characters that no text holds; 0x1a is the end-of-file mark of old DOS editors.
+/// Control characters that do not occur in text; 0x1a is the end-of-file mark of old DOS editors.
 fn is_binary(byte: u8) -> bool {
     byte < 0x20 && !matches!(byte, b'\t' | b'\n' | 0x0b | 0x0c | b'\r' | 0x1a)
 }
 
-/// Blanks inside a line and line ends alike.
+/// Blanks and line ends.
 #[inline]
 pub(crate) fn is_blank(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\n' | 0x0b | 0x0c | b'\r')
 }
 
-/// The line, from 1, that holds the byte at `offset`.
+/// The line, counted from 1, of the byte at `offset`.
 pub(crate) fn line_of(text: &[u8], offset: usize) -> usize {
     let before = text.get(..offset).unwrap_or(text);
     let lone_returns =
@@ -55,7 +55,7 @@ pub(crate) fn line_feeds(text: &[u8]) -> usize {
     text.iter().map(|&b| usize::from(b == b'\n')).sum()
 }
 
-/// Walks over the lines of a text: ended by LF, CRLF or CR, in any mixture, without their ends.
+/// Iterates over the lines of a text: ended by LF, CRLF or CR, in any mixture, without their ends.
 #[derive(Debug, Clone)]
 pub(crate) struct Lines<'a> {
     text: &'a [u8],
@@ -74,7 +74,7 @@ impl<'a> Lines<'a> {
         self.start
     }
 
-    /// Whether only blanks are left.
+    /// Whether only blanks remain.
     pub(crate) fn rest_is_blank(&self) -> bool {
         self.text.get(self.start..).is_none_or(|rest| rest.iter().all(|&b| is_blank(b)))
     }
@@ -106,7 +106,7 @@ pub(crate) fn decode(bytes: &[u8]) -> String {
         .map_or_else(|_| bytes.iter().map(|&b| char::from(b)).collect(), ToOwned::to_owned)
 }
 
-/// A piece of a file as it may stand in a message: short, and without control characters.
+/// A part of a file for a message: short, and without control characters.
 pub(crate) fn quote(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
     let text = decode(bytes.trim_ascii());

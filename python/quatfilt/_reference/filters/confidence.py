@@ -1,4 +1,4 @@
-"""Confidence for filters that have no weights of their own: doubtful samples give way to their surroundings first."""
+"""Confidence for filters that have no weights of their own: samples of low confidence are first moved towards their surroundings."""
 
 import numpy as np
 
@@ -16,16 +16,16 @@ RADIUS = 8
 
 
 def pulled_by_confidence(q: Reals, confidence: Reals) -> Reals:
-    """Replace samples as far as they are not trusted.
+    """Move samples towards their surroundings by one minus their confidence.
 
     Samples of confidence 0 are missing ones: they are filled in along the geodesics between the others. Samples of a
-    confidence `c` between 0 and 1 move by `1 − c` of the way towards the mean of their surroundings, themselves
+    confidence `c` between 0 and 1 move by the fraction `1 − c` towards the mean of their surroundings, themselves
     included,
 
         `m_t = Σ_r exp(−r² / 2σ²) c_{t+r} q_{t+r} / |Σ_r …|`,    `r = −8 … 8`,    `σ = 2`,
 
     along the path that is continuous in sign, with mirrored ends. Samples of confidence 1 stay as they are, and so do
-    joints that are trusted nowhere.
+    joints whose confidence is 0 in all frames.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def pulled_by_confidence(q: Reals, confidence: Reals) -> Reals:
     Returns
     -------
     array (frames, joints, 4)
-        Continuous in sign from the first trusted sample.
+        Continuous in sign from the first sample with confidence.
     """
     if q.size == 0:
         return q.copy()
@@ -53,7 +53,7 @@ def pulled_by_confidence(q: Reals, confidence: Reals) -> Reals:
 def surroundings(path: Reals, trust: Reals) -> Reals:
     """Means of the samples around each one, weighted by confidence and by nearness in time: unit quaternions.
 
-    Where nothing around is trusted, or the sum is 0, the sample itself.
+    The sample itself if all confidences around it are 0, or the sum is 0.
     """
     frames = len(path)
     weighted = extend_by_index(trust[..., None] * path, RADIUS, "mirror")

@@ -224,7 +224,7 @@ def mean_path(path: Reals, trust: Reals | None, mask: Reals) -> tuple[Reals, Rea
 
 @dataclass(frozen=True)
 class Columns:
-    """What a filter for numbers is applied to: the vectors of one joint, or a translation."""
+    """Input of a linear filter: the vectors of one joint, or a translation."""
 
     vectors: Reals
     """`(frames, 3)`."""
@@ -234,7 +234,7 @@ class Columns:
     """The samples' confidence, `(frames,)`."""
 
     def pulled(self) -> Reals:
-        """Return the vectors, pulled towards their local mean by as much as they are not trusted."""
+        """Return the vectors, moved towards their local mean by one minus their confidence."""
         if self.trust is None:
             return self.vectors
         return self.mean + self.trust[:, None] * (self.vectors - self.mean)

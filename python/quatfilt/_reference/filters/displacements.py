@@ -1,4 +1,4 @@
-"""Ways from one rotation to another: rotation vectors in the frame of their start; arrays `(n, 4)` and `(n, 3)`."""
+"""Displacements between rotations: rotation vectors in the frame of their start; arrays `(n, 4)` and `(n, 3)`."""
 
 from quatfilt._reference._arrays import Reals
 from quatfilt._reference.motion.skeleton import rotate
@@ -6,18 +6,18 @@ from quatfilt._reference.rotations.quaternion import between, exp, log_short, mu
 
 
 def moved(rotation: Reals, displacement: Reals) -> Reals:
-    """Return the rotation at the end of a way, a rotation vector in the frame of its start."""
+    """Return the rotation at the end of a displacement, a rotation vector in the frame of its start."""
     return multiply(rotation, exp(displacement / 2))
 
 
 def displacement_between(start: Reals, end: Reals) -> Reals:
-    """Return the shorter way from one rotation to another, a rotation vector in the frame of its start."""
+    """Return the shorter displacement between two rotations, a rotation vector in the frame of its start."""
     return 2 * log_short(between(start, end))
 
 
 def carried(vector: Reals, displacement: Reals) -> Reals:
-    """Carry a vector of the tangent space along a way by parallel transport, into the frame of the way's end.
+    """Move a vector of the tangent space along a displacement by parallel transport, into the frame of its end.
 
-    Of the turn of the frame along a geodesic, parallel transport makes up for one half.
+    Parallel transport along a geodesic compensates for half of the rotation of the frame.
     """
     return rotate(exp(-displacement / 4), vector)

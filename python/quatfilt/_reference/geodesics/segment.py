@@ -51,7 +51,7 @@ def segment(
     growth : array (frames,)
         `d_i`; NaN where the segment is too young.
     limit : array (frames,)
-        What `d_i` was compared with; NaN where it was not.
+        Threshold of `d_i`; NaN where it was not tested.
     """
     frames, joints = q.shape[:2]
     growth, limit = np.full(frames, np.nan), np.full(frames, np.nan)

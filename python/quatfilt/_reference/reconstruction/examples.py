@@ -1,4 +1,4 @@
-"""The examples that a pose is learned from: by the poses before it, and by the ways of the control points."""
+"""Search for the examples of a pose: by the previous poses and by the control points."""
 
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ from quatfilt._reference.rotations.quaternion import between, exp, log_short, mu
 
 
 class Poses(NamedTuple):
-    """A database, and where its poses would have the control points.
+    """A database, with the positions of the control points.
 
     Parameters
     ----------
@@ -20,21 +20,21 @@ class Poses(NamedTuple):
     heading : array (poses,)
         Headings of the root, radians.
     translation : array (poses, 3)
-        Positions of the root, in the size of the body that is reconstructed.
+        Positions of the root, scaled to the reconstructed body.
     trajectories : array (poses, points, 3)
         Positions of the control points.
     starts : array (clips + 1,) of int64
-        The first pose of each clip, and the number of poses.
+        The first pose of each clip, followed by the number of poses.
     features : array (poses, 3·joints)
-        Poses as vectors.
+        Feature vectors of the poses.
     mean_rotations : array (joints, 4)
-        From which they are measured.
+        Mean rotations to which the features are relative.
     joint_weights : array (joints,)
-        How much joints count in them.
+        Weight of each joint in the features.
     graph : array (poses, degree) of int32 or None
-        Neighbours of the poses, −1 where there are fewer.
+        Neighbours of the poses; −1 for missing entries.
     tables : object
-        What kernels keep from call to call; nothing depends on it.
+        Tables that kernels reuse between calls; they do not affect the result.
     """
 
     rotations: NDArray[np.float32]
@@ -49,12 +49,12 @@ class Poses(NamedTuple):
     tables: object = None
 
     def feature(self, pose: Floats) -> Floats:
-        """Return a pose as a vector."""
+        """Return the feature vector of a pose."""
         vectors = 2 * log_short(between(self.mean_rotations, pose))
         return (np.sqrt(self.joint_weights)[:, None] * vectors).reshape(-1)
 
     def candidates(self, before: int, stride: int) -> NDArray[np.intp]:
-        """Return every `stride`-th pose of each clip, from the first with so many poses before it on."""
+        """Return every `stride`-th pose of each clip, from the first with `before` poses before it on."""
         ranges = [
             np.arange(start + before, stop, stride)
             for start, stop in zip(self.starts[:-1], self.starts[1:], strict=True)
@@ -63,16 +63,16 @@ class Poses(NamedTuple):
 
 
 class Observations(NamedTuple):
-    """Control points of some frames, the last of them the one in question.
+    """Control points of some frames, the last of them the current frame.
 
     Parameters
     ----------
     positions : array (n, points, 3)
-        Where they are.
+        Positions.
     weights : array (n, points)
-        How far they are trusted; 0 where they are not seen.
+        Weights; 0 where a point is not observed.
     lags : array (n,) of int64
-        How many frames ago.
+        Lags in frames.
     """
 
     positions: Floats
@@ -81,16 +81,16 @@ class Observations(NamedTuple):
 
 
 class Fit(NamedTuple):
-    """Poses of the database, laid on control points.
+    """Poses of the database, fitted to control points.
 
     Parameters
     ----------
     distance : array (candidates,)
-        Weighted mean of the squared distances between points that are left; 0 where none is seen.
+        Weighted mean of the squared residuals; 0 if no point is observed.
     turn : array (candidates,)
-        By how much a pose is turned about the up axis, radians.
+        Rotation of a pose about the up axis, radians.
     shift : array (candidates, 2)
-        And moved along the two level axes, after the turn.
+        Shift along the two horizontal axes, after the rotation.
     """
 
     distance: Floats
@@ -99,10 +99,10 @@ class Fit(NamedTuple):
 
 
 def fit(poses: Poses, candidates: NDArray[np.intp], observations: Observations, up: int) -> Fit:
-    """Turn each candidate about the up axis, and move it on the ground, to where its control points fit best.
+    """Fit each candidate to the control points by a rotation about the up axis and a horizontal shift.
 
-    With the level coordinates as complex numbers, `z_i` of the points of an example and of the frames before it and `c_i`
-    of the control points, less their weighted means, the turn is the angle of `Σ w z̄_i c_i`, and what is left is
+    With the horizontal coordinates as complex numbers, `z_i` of the points of an example and of the frames before it and `c_i`
+    of the control points, less their weighted means, the rotation angle is that of `Σ w z̄_i c_i`, and the residual is
     `Σ w |z_i|² + Σ w |c_i|² − 2 |Σ w z̄_i c_i|` and the squared differences in height.
     """
     first, second = HORIZONTAL[up]
@@ -127,16 +127,16 @@ def fit(poses: Poses, candidates: NDArray[np.intp], observations: Observations, 
 
 
 class State(NamedTuple):
-    """What is known of the frames before.
+    """State after the previous frame.
 
     Parameters
     ----------
     recent : array (m, joints, 4)
         The last poses, the oldest first, without headings.
     place : array (3,)
-        Where the root was in the last frame.
+        Position of the root in the last frame.
     heading : float
-        Its heading then.
+        Heading of the root in the last frame.
     """
 
     recent: Floats
@@ -145,18 +145,18 @@ class State(NamedTuple):
 
 
 def begin(poses: Poses, observations: Observations, up: int, order: int, before: int, stride: int) -> State:
-    """Take what came before from the pose that fits the control points best, where it fits best.
+    """Return the poses before the best-fitting pose of the database, moved to the best fit.
 
     Parameters
     ----------
     poses, observations, up
         The database, the control points and the up axis.
     order : int
-        How many poses are wanted.
+        Number of poses.
     before : int
-        How many poses of its clip an example has before it.
+        Number of poses of its clip that an example needs before it.
     stride : int
-        Every which pose of a clip may be an example.
+        Only every `stride`-th pose of a clip is a candidate.
     """
     candidates = poses.candidates(before, stride)
     found = fit(poses, candidates, observations, up)
@@ -192,9 +192,9 @@ def nearest(
 ) -> tuple[NDArray[np.intp], Floats]:
     """Find the nearest examples' next poses among some, nearest first, and their squared distances.
 
-    The poses before them are like the last ones, and their control points moved alike. The squared distance of an example is the mean of the squared distances of its `m` poses from the last ones, in
-    radians, and that of its control points (`fit`) over `scale` squared. With an infinite scale it is the paper's. Of the
-    examples within less than `spacing` frames of each other in a clip only the nearest is taken.
+    The squared distance of an example is the mean of the squared distances of its `m` poses from the last ones, in
+    radians, and that of its control points (`fit`) over `scale` squared. With an infinite scale it is the paper's. Of
+    examples less than `spacing` frames apart in one clip only the nearest is kept.
     """
     order = len(state.recent)
     squares = np.zeros(len(candidates))
@@ -216,7 +216,7 @@ def nearest(
 
 
 def root_steps(poses: Poses, examples: NDArray[np.intp], up: int) -> Floats:
-    """How the roots of examples came to their poses: step along two axes of the heading before, height, turn; `(K, 4)`."""
+    """Root displacements of examples: step along the two axes of the previous heading, height, change of heading; `(K, 4)`."""
     first, second = HORIZONTAL[up]
     here, before = (poses.translation[at].astype(np.float64) for at in (examples, examples - 1))
     angle = poses.heading[examples - 1].astype(np.float64)
@@ -234,16 +234,18 @@ def root_steps(poses: Poses, examples: NDArray[np.intp], up: int) -> Floats:
 
 
 BESIDE = 0.5
-"""How far beside the mean of its examples a query may lie, in their root mean square distances: people differ from each other by more
-than examples do, and what is peculiar to one says nothing about the others."""
+"""Largest distance of a query from the mean of its examples, relative to their root-mean-square distance.
+
+People differ from each other more than examples do, and such a difference does not help to predict the next pose.
+"""
 
 
 def shrunk(segments: Floats, recent: Floats, weights: Floats) -> Floats:
-    """Bring the last poses back among those of the examples, `(m, joints, 4)`.
+    """Move the last poses towards those of the examples, `(m, joints, 4)`.
 
-    A pose that lies farther from the mean of the examples' poses of that frame than `BESIDE` times as these do, root mean square
-    and weighted by joint, is moved towards it until it does not. What a regression makes of a query beyond its examples is passed
-    on to the next query, and a wrong pose would be kept.
+    A pose is moved towards the mean of the examples' poses of the same frame if its distance exceeds `BESIDE` times their
+    distance, both root mean square and weighted by joint. It is moved until the distances agree. Without this step, a
+    regression extrapolates beyond its examples, the next query contains the result, and a wrong pose persists.
 
     Parameters
     ----------
@@ -252,7 +254,7 @@ def shrunk(segments: Floats, recent: Floats, weights: Floats) -> Floats:
     recent : array (m, joints, 4)
         The last poses.
     weights : array (joints,)
-        How joints count.
+        Weight of each joint.
     """
     poses = segments[:, :-1]
     signs = np.where(np.sum(poses * poses[0], axis=-1, keepdims=True) < 0, -1.0, 1.0)

@@ -26,7 +26,7 @@ def split_heading(roots: Reals, up: int) -> tuple[Reals, Reals]:
         Radians, without jumps from frame to frame: between `−π` and `π` at the first valid sample, and within half a turn of the
         valid sample before it afterwards. NaN at missing samples.
     rest : array (frames, 4)
-        What is left, computed with the heading as it was rounded, so that both together give `q`; NaN at missing samples.
+        The remaining rotation, computed with the rounded heading, so that both together give `q`; NaN at missing samples.
     """
     valid = ~is_missing(roots)
     q = roots[valid].astype(np.float64)

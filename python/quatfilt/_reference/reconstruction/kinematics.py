@@ -1,9 +1,9 @@
-"""Where control points are, and how they move with the coordinates of a pose.
+"""Forward kinematics of the control points and its Jacobian.
 
-The coordinates `x` of a pose are three for each joint and four for the root's way. Joint `j` turns by
-`c_j exp(x_j / 2)` from its centre `c_j`, so that `x_j` is a rotation vector; the root moreover by its heading, which is that of the frame before and the turn
-`x_turn`. The root stands a step ahead of its place in the frame before, as seen in that frame's heading, and at the height
-`x_height`. So `x = [3·J joint coordinates, forward, sideways, height, turn]`.
+The coordinates `x` of a pose are three for each joint and four for the root's displacement. Joint `j` has the rotation
+`c_j exp(x_j / 2)` with its centre `c_j`, so `x_j` is a rotation vector. The root is rotated in addition by its heading:
+the previous heading plus the change `x_turn`. Its position is the previous position plus a step in the frame of the
+previous heading; its height is `x_height`. So `x = [3·J joint coordinates, forward, sideways, height, turn]`.
 """
 
 from typing import NamedTuple
@@ -20,11 +20,11 @@ Floats = Reals
 """Arrays of float64, as far as the type checker follows them."""
 
 ROOT = 4
-"""Coordinates of the root's way: two of its step, its height, its turn."""
+"""Number of coordinates of the root's displacement: two of its step, its height, its change of heading."""
 
 
 class Body(NamedTuple):
-    """A skeleton, and which joints are control points.
+    """A skeleton with its control points.
 
     Parameters
     ----------
@@ -45,16 +45,16 @@ class Body(NamedTuple):
 
 
 class Base(NamedTuple):
-    """Where coordinates are measured from.
+    """Origin of the coordinates.
 
     Parameters
     ----------
     centres : array (joints, 4)
         Rotations at the origin of the coordinates; that of the root without a heading.
     place : array (3,)
-        Where the root was in the frame before; its height does not matter.
+        Position of the root in the previous frame; its height is not used.
     heading : float
-        Its heading then, radians.
+        Heading of the root in the previous frame, radians.
     """
 
     centres: Floats
@@ -68,12 +68,11 @@ class Points(NamedTuple):
     Parameters
     ----------
     positions : array (points, 3)
-        Where they are.
+        Positions.
     orientations : array (points, 4)
         Their global rotations.
     position_rows, orientation_rows : array (points, 3, coordinates)
-        How the positions move, and how the global rotations turn (angular velocity in the world, radians), with the
-        coordinates.
+        Jacobians of the positions and of the global rotations (angular velocity in the world, radians).
     """
 
     positions: Floats
@@ -94,9 +93,9 @@ def pose(base: Base, x: Floats, up: int) -> tuple[Floats, Floats]:
 
 
 def control_points(body: Body, base: Base, x: Floats) -> Points:
-    """Positions and orientations of the control points of a pose, and how they change with its coordinates.
+    """Positions and orientations of the control points of a pose, and their Jacobians.
 
-    A joint that turns by `ω` moves what hangs below it by `ω × (place − joint)`. With the joint's global rotation `g` and
+    A joint with the angular velocity `ω` moves the points below it by `ω × (position − joint)`. With the joint's global rotation `g` and
     its coordinates `x_j`, a rotation vector, `ω = g J(x_j) dx_j`, where `J` is the right Jacobian of the rotation group
     (`right_jacobian`).
     """

@@ -1,4 +1,4 @@
-"""What control points tell a local model: how far its examples are from them, and where their roots stand when laid on them."""
+"""Inputs of a local model from control points: residuals of the fitted examples, and their roots after the fit."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +11,9 @@ from quatfilt._reference.reconstruction.kinematics import Floats
 def signals(
     poses: Poses, examples: NDArray[np.intp], state: State, observations: Observations, up: int, scale: float
 ) -> tuple[Floats, Floats]:
-    """Lay examples on the control points (`fit`), and tell what is left between them and how the roots come there.
+    """Fit examples to the control points (`fit`); return the residuals and the root displacements.
 
-    What is left is seen from the last heading, in units of `scale`, and so weighted that its sum of squares is `m` times what the control
+    The residuals are in the frame of the last heading, in units of `scale`, and weighted so that its sum of squares is `m` times what the control
     points add to the squared distance of the example (`nearest`).
 
     Where the points lie less than `scale` from their middle as seen from above, root mean square, they do not tell a heading, and

@@ -35,7 +35,7 @@ near the roundings of the energy would be decided by these."""
 
 
 class Prior(NamedTuple):
-    """What is expected of the coordinates of a pose: a Gaussian with the covariance `diag(deviation²) + axes·axesᵀ`.
+    """Prior of the coordinates of a pose: a Gaussian with the covariance `diag(deviation²) + axes·axesᵀ`.
 
     Parameters
     ----------

@@ -24,33 +24,34 @@ from quatfilt._reference.rotations.quaternion import between, log_short
 
 
 class Options(NamedTuple):
-    """How a motion is reconstructed.
+    """Options of a reconstruction.
 
     Parameters
     ----------
     order : int
-        How many poses before are compared, and predicted from: m.
+        Number of previous poses that are compared and that the prediction uses: m.
     neighbors : int
-        How many examples are learned from: K.
+        Number of examples: K.
     stride : int
-        Every which pose of a clip may be an example.
+        Only every `stride`-th pose of a clip is a candidate.
     spacing : int
-        So many frames apart are examples of one clip, at least.
+        Minimum distance between two examples of one clip, in frames.
     window : array (n,) of int64
-        How many frames ago control points are compared; the first is 0.
+        Lags, in frames, at which control points are compared; the first is 0.
     scale : float
-        Distance of control points that counts as much as a radian between poses; infinite: poses alone, in the search and in the
-        models.
+        Distance of control points that counts as much as one radian between poses, in the search and in the model;
+        infinite: only poses count.
     patience : int
-        After so many frames without a control point the next one is a new start.
+        Number of frames without any control point after which the tracker restarts.
     floor : array (5,)
-        Standard deviations of what models do not see: of a joint's coordinate in radians, and of the root's way.
+        Standard deviations added to those of the model: of a joint's coordinate in radians, and of the root's
+        displacement.
     steps : int
-        The most steps of the solver per frame.
+        Largest number of solver steps per frame.
     refresh : int
-        With a graph: frames after which all examples are looked at again.
+        With a graph: frames after a full search until the next.
     ratio : float
-        With a graph: how many times as far as at best since then the last of the examples may be before all are looked at.
+        With a graph: largest distance of the last example, relative to the smallest since the last full search.
     model : tuple of (str, str, str, float, float, float)
         Model, target, deviation, bandwidth, ridge and share, as in `predict_pose`.
     """
@@ -71,13 +72,13 @@ class Options(NamedTuple):
 
 @dataclass
 class Search:
-    """The examples of one frame after the other.
+    """Search for the examples of successive frames.
 
-    Without a graph, all poses of the database that may be examples are looked at in each frame. With one, the candidates are
-    the examples of the frame before, the poses after them, and the neighbours of both; since not every pose may be an
-    example, those fewer than `stride` poses away from them. All are looked at in the first frame, after `refresh` frames, where
-    there are fewer examples than are sought, and where the last of them is more than `ratio` times as far as it was at best
-    since all were looked at (Chai and Hodgins 2005).
+    Without a graph, every frame has a full search of all candidates. With one, the candidates are the examples of the
+    previous frame, their successors, and the neighbours of both. Since not every pose may be an example, the candidates
+    fewer than `stride` poses away from these are taken. The first frame has a full search. Further ones follow after
+    `refresh` frames, if there are fewer than K examples, or if the last example is farther than `ratio` times its
+    smallest distance since the last full search (Chai and Hodgins 2005).
     """
 
     poses: Poses
@@ -88,7 +89,7 @@ class Search:
     least: float = 0.0
 
     def reset(self) -> None:
-        """Forget the frames before."""
+        """Discard the state of the previous frames."""
         self.since = math.inf
 
     def next(self, state: State, observations: Observations) -> NDArray[np.intp]:
@@ -144,9 +145,9 @@ def track(
 ) -> tuple[Floats, Floats, Floats]:
     """Reconstruct a motion from trajectories of some joints.
 
-    In each frame, the examples nearest to the last poses are found (`Search`), a local model of how they went on predicts
-    the pose, and the most probable pose is found, from the prediction or from the nearest example, whichever has the lower
-    energy.
+    Each frame takes three steps: search the examples nearest to the last poses (`Search`); predict the pose by a local
+    model of the examples; minimise the energy, starting from the prediction or from the nearest example, whichever has
+    the lower energy.
 
     Parameters
     ----------
@@ -155,14 +156,14 @@ def track(
     poses : tuple
         The fields of `Poses`.
     options : tuple
-        The fields of `Options` but the last.
+        The fields of `Options` except the last.
     model : tuple
-        The last.
+        The last field of `Options`.
     initial : (array (m, joints, 4), array (3,), float) or None
-        Poses before the first frame, the oldest first, without headings; place and heading of the root in the last of
-        them. None: those of the database's pose that fits the control points of the first frame best.
+        Poses before the first frame, the oldest first, without headings; position and heading of the root in the last of
+        them. None: those of the database pose that fits the control points of the first frame best.
     positions, position_deviations, orientations, orientation_deviations : arrays (frames, points, …)
-        Where control points are seen, as in `Targets`.
+        Observed control points, as in `Targets`.
 
     Returns
     -------
@@ -171,7 +172,7 @@ def track(
     translation : array (frames, 3)
         Position of the root.
     energies : array (frames, 2)
-        The two parts of the energy of each frame: of what is seen, and of what was expected.
+        The two terms of the energy of each frame: of the observations and of the prior.
     """
     body, database = Body(parents, offsets, points, up), Poses(*poses)  # type: ignore[arg-type]
     how = Options(*options, model)  # type: ignore[call-arg, arg-type]
@@ -208,14 +209,14 @@ def track(
 
 
 def history(how: Options) -> int:
-    """How many poses of its clip an example has before it."""
+    """Return the number of poses of its clip that an example needs before it."""
     return max(how.order, int(how.window.max()))
 
 
 def next_pose(
     body: Body, search: Search, state: State, observations: Observations, seen: Targets
 ) -> tuple[Floats, Floats, tuple[float, float]]:
-    """Find the most probable pose of the next frame, and the two parts of its energy."""
+    """Find the most probable pose of the next frame, and the two terms of its energy."""
     poses, how = search.poses, search.how
     found = search.next(state, observations)
     segments = poses.rotations[found[:, None] + np.arange(-how.order, 1)].astype(np.float64)

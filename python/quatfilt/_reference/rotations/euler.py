@@ -1,4 +1,4 @@
-"""Euler angles: rotations as three turns about coordinate axes, as files hold them.
+"""Euler angles: rotations as three successive rotations about coordinate axes, as in motion files.
 
 The angles `(a₀, a₁, a₂)` about the axes `(i, j, k)`, a word such as `"ZXY"`, stand for `R_i(a₀)·R_j(a₁)·R_k(a₂)`: each turn
 is about the axis as those before it have left it. `(a₀ + π, π − a₁, a₂ + π)` is the same rotation, and whole turns may be
@@ -75,7 +75,7 @@ def to_euler(q: Reals, axes: str) -> Reals:
 
 
 def wrapped(angle: Reals) -> Reals:
-    """Angles in `[−2π, 2π]`, moved by whole turns into `[−π, π]`."""
+    """Angles in `[−2π, 2π]`, moved by multiples of 2π to `[−π, π]`."""
     near_zero: Reals = angle - 2 * np.pi * (angle > np.pi) + 2 * np.pi * (angle < -np.pi)
     return near_zero
 
@@ -84,7 +84,7 @@ def continuous_euler(angles: Reals, start: Reals, axes: str) -> Reals:
     """Euler angles made continuous along time, in radians, `(frames, joints, 3)`.
 
     Each triple becomes the one of the same rotation that is nearest to the triple before it, the first one nearest to
-    `start`, `(joints, 3)`. In a gimbal lock the third angle stays what it was, and the first makes up for it. Triples with
+    `start`, `(joints, 3)`. In gimbal lock the third angle keeps its previous value, and the first compensates for it. Triples with
     NaN stay as they are, and continuity goes across them; a joint whose start has NaN begins with its first triple.
     """
     result = angles.copy()
@@ -111,6 +111,6 @@ def nearest(angles: Reals, before: Reals, axes: str) -> Reals:
 
 
 def near(angles: Reals, target: Reals) -> Reals:
-    """Add whole turns to `angles` to bring them nearest to `target`."""
+    """Add multiples of 2π to `angles` to bring them nearest to `target`."""
     turns: Reals = np.round((target - angles) / (2 * np.pi))
     return angles + 2 * np.pi * turns

@@ -84,7 +84,7 @@ def log(q: Reals) -> Reals:
 
 
 def log_short(q: Reals) -> Reals:
-    """Logarithm of `q` or `−q`, whichever has `w ≥ 0`: half of the rotation vector of the shorter way."""
+    """Logarithm of `q` or `−q`, whichever has `w ≥ 0`: half of the rotation vector of the shorter rotation."""
     return log(q * np.copysign(1, q[..., :1]))
 
 
@@ -133,16 +133,16 @@ def continuous(q: Reals) -> Reals:
 
 
 def scan(q: Reals) -> tuple[int, float, int]:
-    """Look for what is wrong with a clip `(frames, joints, 4)`.
+    """Check a clip `(frames, joints, 4)`: missing samples and lengths.
 
     Returns
     -------
     missing : int
-        How many samples are missing.
+        Number of missing samples.
     worst : float
         The largest `| |q| − 1 |` over the others, 0 if there are none.
     index : int
-        Where that is, as `frame · joints + joint`; the first such sample.
+        Index of that sample, as `frame · joints + joint`; the first one.
     """
     flat = q.reshape(-1, 4).astype(np.float64)
     missing = is_missing(flat)

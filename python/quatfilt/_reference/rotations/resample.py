@@ -38,5 +38,5 @@ def slerp(q: Reals, times: Reals, new_times: Reals) -> Reals:
 
 
 def geodesic(a: Reals, b: Reals, part: Reals) -> Reals:
-    """Rotation at `part` (0 … 1) of the shorter way from `a` to `b`."""
+    """Rotation at the fraction `part` (0 … 1) of the shorter geodesic from `a` to `b`."""
     return multiply(a, exp(part * log_short(between(a, b))))

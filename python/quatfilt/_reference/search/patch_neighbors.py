@@ -1,4 +1,4 @@
-"""Patch search: the most similar patches of every frame."""
+"""Patch search: the nearest patches of every frame."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -10,20 +10,20 @@ from quatfilt._reference._arrays import Indices, Mask, Reals
 from quatfilt._reference.filters.boundary import extend_by_index
 from quatfilt._reference.rotations.quaternion import geodesic_distance, is_missing
 
-NOBODY = -1
-"""What stands for a neighbour that does not exist; its distance is infinite."""
+NO_NEIGHBOR = -1
+"""Index of a missing neighbour; its distance is infinite."""
 
 
 @dataclass(frozen=True)
 class Poses:
-    """Clips, each continued beyond its ends, one after the other."""
+    """Concatenated clips, each extended beyond its ends."""
 
     rotations: Reals
-    """Rotations, `(N, joints, 4)`; anything where they are missing."""
+    """Rotations, `(N, joints, 4)`; arbitrary where they are missing."""
     present: Mask
-    """Which samples are there, `(N, joints)`."""
+    """Mask of the valid samples, `(N, joints)`."""
     middles: Indices
-    """Where the clips' own frames stand."""
+    """Indices of the clips' own frames."""
 
 
 def patch_neighbors(
@@ -35,14 +35,14 @@ def patch_neighbors(
     exclusion: int,
     weights: Reals,
 ) -> tuple[NDArray[np.int64], Reals]:
-    """Find the `k` most similar patches of every frame.
+    """Find the `k` nearest patches of every frame.
 
-    The patch of a frame `t` has the offsets `o = −r … r`. Beyond the ends of a clip its end frame is held. With `θ_j` the
+    The patch of a frame `t` has the offsets `o = −r … r`. Past the ends of a clip its end frame is repeated. With `θ_j` the
     rotation angle between two samples of joint `j`,
 
         `D(t, s)² = Σ w_j θ_j(t+o, s+o)² / Σ w_j`,
 
-    both sums over the offsets and joints whose two samples are there. Patches without such a pair are no neighbours.
+    both sums over the offsets and joints with two valid samples. Patches without such a pair are not neighbours.
 
     The cost is `frames · candidates · joints`, the memory linear in both.
 
@@ -51,30 +51,30 @@ def patch_neighbors(
     q : array (frames, joints, 4)
         The rotations whose patches have neighbours.
     library : array (N, joints, 4) or None
-        Clips one after the other, all of whose frames are candidates. `None`: the candidates of frame `t` are the frames
+        Concatenated clips, all of whose frames are candidates. `None`: the candidates of frame `t` are the frames
         `s` of `q` with `|s − t| > exclusion`.
     lengths : list of int, frames
         The lengths of the clips of the library.
     patch_radius : int, frames
         The radius `r` of a patch.
     k : int
-        How many neighbours.
+        Number of neighbours per frame.
     exclusion : int, frames
     weights : array (joints,)
-        What each joint counts, `≥ 0`.
+        Weight of each joint, `≥ 0`.
 
     Returns
     -------
     indices : array (frames, k) of int64
-        Candidates, the nearest first, of equally near ones the lower number; −1 where there are no more.
+        Candidates, nearest first; ties go to the lower index. −1 for missing entries.
     distances : array (frames, k), radians
-        Their distances `D`; infinite where there are no more.
+        Their distances `D`; infinite for missing entries.
     """
     here = extended([q], patch_radius)
     there = here if library is None else extended(np.split(library, np.cumsum(lengths)[:-1]), patch_radius)
     offsets = np.arange(-patch_radius, patch_radius + 1)
     patches = there.middles[:, None] + offsets
-    indices = np.full((len(q), k), NOBODY, np.int64)
+    indices = np.full((len(q), k), NO_NEIGHBOR, np.int64)
     nearest = np.full((len(q), k), np.inf)
     rows: deque[tuple[Reals, Reals]] = deque(maxlen=len(offsets))
     for frame in range(len(here.rotations)):
@@ -95,7 +95,7 @@ def patch_neighbors(
 
 
 def extended(clips: list[Reals], padding: int) -> Poses:
-    """Continue clips by holding their end frames, and put them one after the other."""
+    """Extend clips by repeating their end frames, and concatenate them."""
     rotations, middles, start = [], [], 0
     for clip in clips:
         if len(clip):

@@ -1,4 +1,4 @@
-"""Pose search: segments of poses in a database that are nearest to others."""
+"""Pose search: the segments of poses in a database that are nearest to a query."""
 
 import itertools
 
@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from quatfilt._reference._arrays import Indices, Reals
 
-NOBODY = -1
-"""What stands for a neighbour that does not exist; its distance is infinite."""
+NO_NEIGHBOR = -1
+"""Index of a missing neighbour; its distance is infinite."""
 
 
 def nearest_segments(
@@ -21,7 +21,7 @@ def nearest_segments(
 ) -> tuple[NDArray[np.int64], Reals]:
     """Find the `k` nearest segments of `m` poses to each query.
 
-    A segment is known by the number `e` of its last pose. Its distance to a query `Q` is
+    A segment is identified by the index `e` of its last pose. Its distance to a query `Q` is
 
         `d(e, Q)² = Σ_{i<m} |f[e−i] − Q[m−1−i]|²`.
 
@@ -30,27 +30,27 @@ def nearest_segments(
     Parameters
     ----------
     features : array (poses, dims)
-        Poses, the distances of which are Euclidean. Segments with a number that is not finite are no candidates.
+        Poses; their distances are Euclidean. Segments with values that are not finite are not candidates.
     starts : array (clips + 1,)
-        The first pose of each clip, and the number of poses.
+        The first pose of each clip, followed by the number of poses.
     queries : array (queries, m, dims)
-        The segments whose neighbours are sought. One with a number that is not finite has none.
+        Segments; one with values that are not finite has no neighbours.
     k : int
-        How many.
+        Number of neighbours per query.
     successors : int
-        How many poses of its clip must follow a candidate.
+        Number of poses of its clip that must follow a candidate.
     excluded : array (queries, 2) or None
-        Candidates `first ≤ e < last` that do not count.
+        Candidates `first ≤ e < last` that are left out.
 
     Returns
     -------
     indices : array (queries, k)
-        Nearest first; of two that are as near, the one of the lower number. −1 where there are fewer.
+        Nearest first; ties go to the lower index. −1 for missing entries.
     distances : array (queries, k)
-        Infinite where there are fewer.
+        Infinite for missing entries.
     """
     ends = candidates(starts, queries.shape[1], successors)
-    indices = np.full((len(queries), k), NOBODY, np.int64)
+    indices = np.full((len(queries), k), NO_NEIGHBOR, np.int64)
     distances = np.full((len(queries), k), np.inf, features.dtype)
     for i, query in enumerate(queries):
         squares = square_distances(features, ends, query)
@@ -92,32 +92,32 @@ def neighbor_graph(
     exclusion: int,
     spacing: int,
 ) -> tuple[NDArray[np.int32], Reals]:
-    """Find the `degree` nearest segments to each segment that lie apart from it and from each other.
+    """Find the `degree` nearest segments to each segment, with minimum distances in time.
 
     Parameters
     ----------
     features : array (poses, dims)
         Poses.
     starts : array (clips + 1,)
-        The first pose of each clip, and the number of poses.
+        The first pose of each clip, followed by the number of poses.
     degree : int
-        How many.
+        Number of neighbours per segment.
     length : int, poses
         The length of a segment.
     successors : int
-        How many poses of its clip must follow a candidate.
+        Number of poses of its clip that must follow a candidate.
     exclusion : int, poses
-        Segments of the same clip so near in time are no neighbours, nor is the segment itself.
+        Segments of the same clip at most this many poses away are not neighbours.
     spacing : int, poses
-        Of segments that lie less than so far apart in a clip only the nearest is a neighbour.
+        Minimum distance between two neighbours of the same clip; the nearer one is kept.
 
     Returns
     -------
     indices : array (poses, degree)
-        As of :func:`nearest_segments`; −1 in the row of a pose at which no candidate ends.
+        As of :func:`nearest_segments`; −1 in the row of a pose that ends no candidate.
     distances : array (poses, degree)
     """
-    indices = np.full((len(features), degree), NOBODY, np.int32)
+    indices = np.full((len(features), degree), NO_NEIGHBOR, np.int32)
     distances = np.full((len(features), degree), np.inf, features.dtype)
     clip = np.searchsorted(starts, np.arange(len(features)), side="right")
     for first, last in itertools.pairwise(starts):
@@ -132,12 +132,12 @@ def neighbor_graph(
 
 
 def _apart(ends: NDArray[np.int64], clip: Indices, spacing: int, count: int) -> list[int]:
-    """Return the places of the first `count` that are not less than `spacing` poses from one before them in a clip."""
+    """Return the indices of the first `count` ends that are at least `spacing` poses from earlier ones in their clip."""
     chosen: list[int] = []
     free = np.ones(len(clip), bool)
-    for place, end in enumerate(ends):
-        if end != NOBODY and free[end] and len(chosen) < count:
-            chosen.append(place)
+    for index, end in enumerate(ends):
+        if end != NO_NEIGHBOR and free[end] and len(chosen) < count:
+            chosen.append(index)
             near = slice(max(0, int(end) - spacing + 1), int(end) + spacing)
             free[near] &= clip[near] != clip[end]
     return chosen

@@ -1,7 +1,7 @@
 """Search from frame to frame: the nearest segments of one frame lie near those of the next.
 
-Along a graph as in J. Chai and J. K. Hodgins, *Performance animation from low-dimensional control signals*,
-SIGGRAPH 2005, but best first, as in algorithm 2 of Y. A. Malkov and D. A. Yashunin, *Efficient and robust approximate nearest
+Approximate search along a graph as in J. Chai and J. K. Hodgins, *Performance animation from low-dimensional control signals*,
+SIGGRAPH 2005, but expanding the nearest first, as in algorithm 2 of Y. A. Malkov and D. A. Yashunin, *Efficient and robust approximate nearest
 neighbor search using hierarchical navigable small world graphs*, 2020; without a graph, the exact search of every frame.
 """
 
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quatfilt._reference._arrays import Indices, Reals
-from quatfilt._reference.search.poses import NOBODY, candidates, nearest_segments, square_distances
+from quatfilt._reference.search.poses import NO_NEIGHBOR, candidates, nearest_segments, square_distances
 
 
 @dataclass
@@ -38,9 +38,9 @@ class SegmentWalk:
         self.breadth = self.k if self.graph is None else max(self.breadth, self.k)
 
     def next(self, query: Reals, first: int, last: int, /) -> tuple[NDArray[np.int64], Reals, bool]:
-        """Find the segments nearest to `query`, `(length, dims)`, but for those from `first` to before `last`.
+        """Find the segments nearest to `query`, `(length, dims)`, except for those with indices in `first` … `last − 1`.
 
-        Returns their numbers and distances, `(k,)`, and whether all segments were looked at.
+        Returns their indices and distances, `(k,)`, and whether all segments were searched.
         """
         if not np.isfinite(query).all():
             self._since = math.inf
@@ -57,7 +57,7 @@ class SegmentWalk:
             indices, _ = nearest_segments(
                 self.features, self.starts, query[None], self.breadth, self.successors, excluded
             )
-            ends = indices[0][indices[0] != NOBODY]
+            ends = indices[0][indices[0] != NO_NEIGHBOR]
             found = ends, square_distances(self.features, ends, query)
         ends, squares = found
         if len(ends) >= self.k:
@@ -70,11 +70,11 @@ class SegmentWalk:
         return self._written(ends), distances, not kept
 
     def reset(self) -> None:
-        """Forget the frames before."""
+        """Discard the state of the previous frames."""
         self._since = math.inf
 
     def _walk(self, graph: NDArray[np.int32], query: Reals, first: int, last: int) -> tuple[Indices, Reals]:
-        """Go out from the nearest before and their successors, from the nearest that is known to its neighbours."""
+        """Start from the previous neighbours and their successors; expand the nearest known segment."""
         allowed = np.zeros(len(graph) + 1, bool)
         allowed[self._ends] = True
         allowed[first:last] = False
@@ -96,7 +96,7 @@ class SegmentWalk:
         return np.array([end for _, end in nearest], np.intp), np.array([square for square, _ in nearest])
 
     def _written(self, ends: Indices) -> NDArray[np.int64]:
-        indices = np.full(self.k, NOBODY, np.int64)
+        indices = np.full(self.k, NO_NEIGHBOR, np.int64)
         indices[: len(ends)] = ends[: self.k]
         return indices
 
@@ -114,14 +114,14 @@ def segment_walk(
 ) -> SegmentWalk:
     """Make a search along a motion for the `k` nearest segments of `length` poses.
 
-    Without a graph, each frame has all segments looked at; `breadth`, `refresh` and `ratio` do not matter then.
+    Without a graph, every frame has a full search; `breadth`, `refresh` and `ratio` are not used.
 
-    With one, in the first frame, and where it says so below, all segments are looked at. Otherwise the `breadth` nearest of the frame
-    before, at least `k`, and the poses after them are known at first, and a list holds the `breadth` nearest of what is known. Again and
-    again the nearest of the list whose neighbours are not known yet makes them known: those in `graph`, `(poses, degree)`, the
-    pose before it and that after it. The search ends where none is left in the list.
+    With a graph, the first frame has a full search. In later frames the search starts from the `breadth` nearest segments of
+    the previous frame, at least `k`, and their successors. A list holds the `breadth` nearest segments known so far. The
+    nearest segment of the list that has not been expanded is expanded: its neighbours in `graph`, `(poses, degree)`, the
+    previous pose and the next pose are added. The search ends when all segments of the list have been expanded.
 
-    All segments are looked at again after `refresh` frames, where there are fewer than `k` candidates, and where the
-    last of the nearest is more than `ratio` times as far as it was at best since all were looked at.
+    A full search follows after `refresh` frames, if there are fewer than `k` candidates, or if the last neighbour is
+    farther than `ratio` times its smallest distance since the last full search.
     """
     return SegmentWalk(features, starts, graph, k, length, successors, breadth, refresh, ratio)

@@ -9,7 +9,7 @@ use quatfilt_core::filters::bilateral::{Bilateral, Kernel, Translation};
 
 /// Filters rotations `(frames, joints, 4)` and, with the weights of the first joint, a translation `(frames, 3)`.
 ///
-/// A `lookahead` of −1 stands for no limit.
+/// A `lookahead` of −1 means no limit.
 #[pyfunction]
 #[pyo3(signature = (q, translation, radius, sigma_time, sigma_angle, kernel, iterations, boundary, lookahead, /))]
 #[allow(clippy::too_many_arguments, reason = "the reference's positional arguments")]
@@ -29,7 +29,7 @@ pub(crate) fn bilateral(
     by_dtype!(q, T => typed::<T>(py, &filter, q, translation))
 }
 
-/// The filter, of positional arguments.
+/// The filter with these positional arguments.
 pub(super) fn filter(
     radius: usize,
     sigma_time: f64,

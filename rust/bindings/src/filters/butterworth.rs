@@ -6,7 +6,7 @@ use numpy::PyUntypedArrayMethods;
 use pyo3::prelude::*;
 use quatfilt_core::filters::butterworth::Butterworth;
 
-/// Filters rotations `(frames, joints, 4)` and, as the first joint, a translation `(frames, 3)`.
+/// Filters rotations `(frames, joints, 4)` and, like the first joint, a translation `(frames, 3)`.
 #[pyfunction]
 #[pyo3(signature = (q, translation, confidence, reference_sigma, sections, states, padding, /))]
 #[allow(clippy::too_many_arguments, reason = "the reference's positional arguments")]

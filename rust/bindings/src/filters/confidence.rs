@@ -1,11 +1,12 @@
-//! Confidence for filters that have no weights of their own.
+//! Confidence for filters without weights.
 
 use crate::array::{by_dtype, clip, clip_mut, elements, input, output, run};
 use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use quatfilt_core::filters::confidence;
 
-/// Rotations `(frames, joints, 4)` whose samples gave way as far as they are not trusted, by `(frames, joints)`.
+/// Rotations `(frames, joints, 4)`, moved towards their surroundings by one minus their confidence, `(frames,
+/// joints)`.
 #[pyfunction]
 #[pyo3(signature = (q, confidence, /))]
 pub(crate) fn pulled_by_confidence(

@@ -1,4 +1,4 @@
-//! Rotations as vectors about a reference path, and what filters on them have in common.
+//! Rotations as vectors about a reference path, and the shared code of linear filters on them.
 
 use crate::array::{by_dtype, clip, clip_mut, elements, input, output, run, run_interruptible};
 use numpy::{Element, PyArrayMethods, PyUntypedArrayMethods};
@@ -41,7 +41,7 @@ pub(crate) fn develop(
     })
 }
 
-/// Rotations `(frames, joints, 4)` of vectors about a reference path.
+/// Rotations `(frames, joints, 4)` from vectors about a reference path.
 #[pyfunction]
 #[pyo3(signature = (q, reference, development, vectors, /))]
 pub(crate) fn undevelop(
@@ -71,10 +71,10 @@ pub(crate) fn undevelop(
     })
 }
 
-/// Estimated nanoseconds per rotation of the way to the vectors and back.
+/// Estimated nanoseconds per rotation for the development and its inverse.
 pub(super) const NANOSECONDS: usize = 60;
 
-/// What filters on vectors about a reference path take.
+/// Arguments of linear filters on vectors about a reference path.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Arguments<'a, 'py> {
     pub(super) q: &'a Bound<'py, PyAny>,

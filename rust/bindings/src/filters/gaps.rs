@@ -6,7 +6,7 @@ use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use quatfilt_core::filters::gaps::{self, Method};
 
-/// Filled runs of missing samples, `(frames, joints, 4)`, and where samples were filled in, `(frames, joints)`.
+/// Filled runs of missing samples, `(frames, joints, 4)`, and the mask of filled samples, `(frames, joints)`.
 #[pyfunction]
 #[pyo3(signature = (q, max_gap, method, /))]
 pub(crate) fn fill_gaps(

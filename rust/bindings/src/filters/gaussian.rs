@@ -6,7 +6,7 @@ use crate::array::{elements, input};
 use pyo3::prelude::*;
 use quatfilt_core::filters::gaussian::Gaussian;
 
-/// Filters rotations `(frames, joints, 4)` and, as the first joint, a translation `(frames, 3)`.
+/// Filters rotations `(frames, joints, 4)` and, like the first joint, a translation `(frames, 3)`.
 #[pyfunction]
 #[pyo3(signature = (q, translation, confidence, reference_sigma, sigma, boundary, /))]
 pub(crate) fn gaussian(

@@ -1,4 +1,4 @@
-//! The Kalman filter of constant velocity, its smoother, and how stiff they are to be.
+//! The Kalman filter of constant velocity, its smoother, and their automatic process noise.
 
 use crate::array::{by_dtype, clip, clip_mut, elements, input, numbers, output, run_interruptible};
 use numpy::{Element, PyArray1, PyArrayMethods, PyUntypedArrayMethods};
@@ -27,7 +27,7 @@ pub(crate) fn filter(
     by_dtype!(q, T => filtered::<T>(py, &filter, q, confidence))
 }
 
-/// The filter of these arguments.
+/// The filter with these arguments.
 pub(super) fn parameters(
     process_noise: &Bound<'_, PyAny>,
     measurement_noise: &Bound<'_, PyAny>,
@@ -61,7 +61,7 @@ fn filtered<T: Real + Element>(
     Ok(out.into_any().unbind())
 }
 
-/// The process noise that suits a clip, `(joints,)`.
+/// The process noise chosen for a clip, `(joints,)`.
 #[pyfunction]
 #[pyo3(signature = (q, confidence, measurement_noise, block, lookahead, /))]
 pub(crate) fn kalman_process_noise(
@@ -86,7 +86,7 @@ pub(crate) fn kalman_process_noise(
     Ok(PyArray1::from_vec(py, result).into_any().unbind())
 }
 
-/// Filtered columns of numbers, `(frames, columns)`.
+/// Filtered columns of scalars, `(frames, columns)`.
 #[pyfunction]
 #[pyo3(signature = (x, ratio, lookahead, /))]
 pub(crate) fn kalman_vectors(
@@ -113,7 +113,7 @@ pub(crate) fn kalman_vectors(
     })
 }
 
-/// The ratio of process to measurement variance that suits each column, `(columns,)`.
+/// The ratio of process to measurement variance chosen for each column, `(columns,)`.
 #[pyfunction]
 #[pyo3(signature = (x, block, lookahead, /))]
 pub(crate) fn kalman_vectors_ratio(

@@ -1,10 +1,10 @@
-//! Names that stand for choices.
+//! Options by name.
 
 use pyo3::PyResult;
 use pyo3::exceptions::PyValueError;
 use quatfilt_core::window::Boundary;
 
-/// The value that a name stands for.
+/// The value of a named option.
 pub(crate) fn named<V: Copy>(argument: &str, name: &str, values: &[(&str, V)]) -> PyResult<V> {
     values
         .iter()
@@ -13,7 +13,7 @@ pub(crate) fn named<V: Copy>(argument: &str, name: &str, values: &[(&str, V)]) -
         .ok_or_else(|| PyValueError::new_err(format!("{argument}: unknown name {name:?}")))
 }
 
-/// How a clip goes on beyond its ends.
+/// Continuation of a clip beyond its ends.
 pub(super) fn boundary(name: &str) -> PyResult<Boundary> {
     named(
         "boundary",

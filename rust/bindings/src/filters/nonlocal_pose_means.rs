@@ -10,7 +10,7 @@ use quatfilt_core::{ClipMut, ClipView, Real};
 
 /// Filters rotations `(frames, joints, 4)` and, with the same weights, a translation `(frames, 3)`.
 ///
-/// −1 stands for the whole clip (`search_radius`), all candidates (`neighbors`) and no limit (`lookahead`).
+/// −1 means the whole clip (`search_radius`), all candidates (`neighbors`) and no limit (`lookahead`).
 #[pyfunction]
 #[pyo3(signature = (q, translation, confidence, bandwidth, search_radius, patch_radius, distance, weights, neighbors, chart, boundary, lookahead, library, lengths, /))]
 #[allow(clippy::needless_pass_by_value, reason = "PyO3 makes a list into a vector")]
@@ -46,7 +46,7 @@ pub(crate) fn nonlocal_pose_means(
     by_dtype!(q, T => typed::<T>(py, &filter, q, translation, confidence, library, &lengths))
 }
 
-/// The filter, of positional arguments.
+/// The filter with these positional arguments.
 #[allow(clippy::too_many_arguments, reason = "the reference's positional arguments")]
 pub(super) fn filter(
     bandwidth: &Bound<'_, PyAny>,

@@ -9,7 +9,8 @@ use quatfilt_core::filters::one_euro::{OneEuro, Translation};
 /// Estimated nanoseconds per sample.
 const NANOSECONDS: usize = 40;
 
-/// Filters rotations `(frames, joints, 4)` and, by the shares of the first joint, a translation `(frames, 3)`.
+/// Filters rotations `(frames, joints, 4)` and, with the smoothing factors of the first joint, a translation
+/// `(frames, 3)`.
 #[pyfunction]
 #[pyo3(signature = (q, translation, confidence, min_cutoff, beta, derivative_cutoff, /))]
 pub(crate) fn one_euro(
@@ -25,7 +26,7 @@ pub(crate) fn one_euro(
     by_dtype!(q, T => typed::<T>(py, &filter, q, translation, confidence))
 }
 
-/// The filter of these arguments.
+/// The filter with these arguments.
 pub(super) fn parameters(
     min_cutoff: &Bound<'_, PyAny>,
     beta: &Bound<'_, PyAny>,

@@ -1,4 +1,4 @@
-//! Savitzky and Golay's filter.
+//! The Savitzky–Golay filter.
 
 use super::development::{Arguments, NANOSECONDS, filtered};
 use crate::array::{by_dtype, clip, elements, input, output, run_interruptible};
@@ -17,7 +17,7 @@ fn filter(fit: &Bound<'_, PyAny>, values: &Bound<'_, PyAny>) -> PyResult<Savgol>
     })
 }
 
-/// Filters rotations `(frames, joints, 4)` and, alike, a translation `(frames, 3)`.
+/// Filters rotations `(frames, joints, 4)` and a translation `(frames, 3)`.
 #[pyfunction]
 #[pyo3(signature = (q, translation, confidence, reference_sigma, fit, values, /))]
 pub(crate) fn savgol(
@@ -33,7 +33,7 @@ pub(crate) fn savgol(
     filtered(py, &filter, Arguments { q, translation, confidence, reference_sigma })
 }
 
-/// Derivatives of rotations in the frame of the body, `(frames, joints, 3)`.
+/// Derivatives of rotations in body coordinates, `(frames, joints, 3)`.
 #[pyfunction]
 #[pyo3(signature = (q, confidence, reference_sigma, fit, values, derivatives, /))]
 pub(crate) fn savgol_derivative(

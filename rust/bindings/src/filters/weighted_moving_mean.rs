@@ -4,7 +4,7 @@ use super::development::{Arguments, filtered};
 use pyo3::prelude::*;
 use quatfilt_core::filters::weighted_moving_mean::WeightedMovingMean;
 
-/// Filters rotations `(frames, joints, 4)` and, alike, a translation `(frames, 3)`.
+/// Filters rotations `(frames, joints, 4)` and a translation `(frames, 3)`.
 #[pyfunction]
 #[pyo3(signature = (q, translation, confidence, reference_sigma, iterations, /))]
 pub(crate) fn weighted_moving_mean(

@@ -1,4 +1,4 @@
-//! Acclaim files: skeletons and motions of them.
+//! Acclaim files: skeletons and their motions.
 
 use super::bvh::matrix;
 use super::{run, texts};

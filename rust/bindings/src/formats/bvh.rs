@@ -66,7 +66,7 @@ pub(crate) fn read_bvh<'py>(py: Python<'py>, data: &Bound<'py, PyBytes>) -> PyRe
     ))
 }
 
-/// The text of a BVH file; numbers have the fewest digits that read back as they are.
+/// The text of a BVH file; numbers have the fewest digits that read back unchanged.
 #[pyfunction]
 #[pyo3(signature = (joints, frame_time, values, /))]
 pub(crate) fn write_bvh<'py>(
@@ -83,7 +83,7 @@ pub(crate) fn write_bvh<'py>(
     Ok(PyBytes::new(py, &text))
 }
 
-/// Hands a table over to NumPy, without a copy.
+/// Passes a table to NumPy without a copy.
 pub(super) fn matrix(
     py: Python<'_>,
     rows: usize,

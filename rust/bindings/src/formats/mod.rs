@@ -1,4 +1,4 @@
-//! Motion-capture files: bytes in and out. Paths, and what the channels mean, are the business of Python.
+//! Motion-capture files: bytes as input and output. Python handles paths and the meaning of channels.
 
 pub(crate) mod acclaim;
 pub(crate) mod bvh;

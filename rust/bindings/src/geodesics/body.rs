@@ -13,7 +13,7 @@ const FIT_NANOSECONDS: usize = 500;
 const SCORE_NANOSECONDS: usize = 80;
 const PRODUCT_NANOSECONDS: usize = 10;
 
-/// Geodesics that are expected where their number is not given.
+/// Expected number of geodesics if it is not given.
 const EXPECTED: usize = 30;
 
 /// Directions `(k, joints, 3)`, residuals `(k,)` and descents `(k, steps)`.
@@ -52,7 +52,7 @@ fn fitted<T: Real + Element>(
     ))
 }
 
-/// Parameters `(frames, k)`.
+/// Parameters `(frames, k)` of poses.
 #[pyfunction]
 #[pyo3(signature = (q, means, directions, /))]
 pub(crate) fn body_scores(
@@ -70,7 +70,7 @@ pub(crate) fn body_scores(
     })
 }
 
-/// Poses `(frames, joints, 4)` of parameters `(frames, k)`.
+/// Poses `(frames, joints, 4)` from parameters `(frames, k)`.
 #[pyfunction]
 #[pyo3(signature = (scores, means, directions, /))]
 pub(crate) fn body_product(

@@ -61,7 +61,7 @@ fn typed<T: Stored + Element>(
     Ok((PyBytes::new(py, &bytes).unbind(), error))
 }
 
-/// The clip `(frames, joints, 4)` of a stream, float64 or float32.
+/// The decoded clip `(frames, joints, 4)` of a stream, float64 or float32.
 #[pyfunction]
 #[pyo3(signature = (data, frames, joints, double, /))]
 pub(crate) fn decompress(

@@ -1,4 +1,4 @@
-//! Analysis by geodesics.
+//! Analysis of rotations by geodesics.
 
 pub(crate) mod body;
 pub(crate) mod compress;

@@ -12,10 +12,10 @@ const CENTRE_NANOSECONDS: usize = 40;
 const FIT_NANOSECONDS: usize = 300;
 const SCORE_NANOSECONDS: usize = 20;
 
-/// Geodesics that are expected where their number is not given.
+/// Expected number of geodesics if it is not given.
 const EXPECTED: usize = 8;
 
-/// Means `(joints, 4)`, radii `(joints,)`, and whether there is no other mean `(joints,)`.
+/// Means `(joints, 4)`, radii `(joints,)`, and whether the means are unique `(joints,)`.
 #[pyfunction]
 #[pyo3(signature = (q, /))]
 pub(crate) fn geodesic_centre(
@@ -92,7 +92,7 @@ pub(crate) fn geodesic_scores(
     })
 }
 
-/// Rotations `(frames, joints, 4)` of parameters `(frames, joints, k)`.
+/// Rotations `(frames, joints, 4)` from parameters `(frames, joints, k)`.
 #[pyfunction]
 #[pyo3(signature = (scores, means, directions, /))]
 pub(crate) fn geodesic_product(

@@ -1,4 +1,4 @@
-//! Cuts between behaviours.
+//! Segmentation into behaviours.
 
 use crate::array::{by_dtype, clip, input, run_interruptible};
 use numpy::{Element, IntoPyArray, PyArray1};

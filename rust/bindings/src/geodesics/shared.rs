@@ -1,4 +1,4 @@
-//! What the principal geodesics of joints and those of whole poses have in common.
+//! Shared code of principal geodesics of joints and of whole poses.
 
 use crate::array::{clip, elements, input, output, run_interruptible};
 use crate::filters::names::named;
@@ -36,7 +36,7 @@ pub(super) fn array<T: Real + Element>(
     Ok(out.into_any().unbind())
 }
 
-/// Descents `(…, steps)`, of which there are as many as `shape` says; NaN behind those that have fewer steps.
+/// Descents `(…, steps)`, with the leading axes in `shape`; shorter ones are padded with NaN.
 pub(super) fn descents<'a, T: Real + Element>(
     py: Python<'_>,
     shape: &[usize],
@@ -49,7 +49,7 @@ pub(super) fn descents<'a, T: Real + Element>(
     array::<T>(py, &[shape, &[steps]].concat(), padded)
 }
 
-/// The parameters of rotations: what `kernel` writes into an array of the shape that `shape` says for frames, joints and `k`.
+/// The parameters of rotations: the output of `kernel`, an array of the `shape` for frames, joints and `k`.
 pub(super) fn scores<T: Real + Element>(
     py: Python<'_>,
     (q, means, directions): (&Bound<'_, PyAny>, &Bound<'_, PyAny>, &Bound<'_, PyAny>),
@@ -72,7 +72,7 @@ pub(super) fn scores<T: Real + Element>(
     Ok(out.into_any().unbind())
 }
 
-/// Rotations `(frames, joints, 4)`: what `kernel` makes of parameters whose first axis are frames.
+/// Rotations `(frames, joints, 4)` from parameters whose first axis are frames: the output of `kernel`.
 pub(super) fn product<T: Real + Element>(
     py: Python<'_>,
     (scores, means, directions): (&Bound<'_, PyAny>, &Bound<'_, PyAny>, &Bound<'_, PyAny>),

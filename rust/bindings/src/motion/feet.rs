@@ -6,7 +6,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use quatfilt_core::motion::feet::{self, Body, Displacements, FootPaths, Placed};
 
-/// When feet stand on the ground, and by how much they are to be moved.
+/// Ground contacts of feet, and the displacements of the feet.
 #[allow(clippy::too_many_arguments, reason = "those of the reference")]
 #[pyfunction]
 #[pyo3(signature = (before, after, lengths, up, fps, given, lock, /))]
@@ -55,7 +55,7 @@ pub(crate) fn foot_displacements(
     })
 }
 
-/// Legs that bring feet where they belong.
+/// Moves feet by inverse kinematics of the legs.
 #[allow(clippy::too_many_arguments, reason = "those of the reference")]
 #[pyfunction]
 #[pyo3(signature = (rotations, translation, local, parents, pelvis, legs, lengths, displacements, root, lock, /))]

@@ -35,7 +35,7 @@ pub(crate) fn forward_kinematics(
     })
 }
 
-/// Positions of joints that move in their parents, `(frames, joints, 4)`, `(frames, joints, 3)`, `(joints)` →
+/// Positions of joints with moving joint translations, `(frames, joints, 4)`, `(frames, joints, 3)`, `(joints)` →
 /// `(frames, joints, 3)`.
 #[pyfunction]
 #[pyo3(signature = (rotations, joint_translations, parents, /))]

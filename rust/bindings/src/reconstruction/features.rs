@@ -1,11 +1,12 @@
-//! Poses as vectors.
+//! Poses as feature vectors.
 
 use crate::array::{by_dtype, clip, input, numbers, output, run};
 use numpy::PyArrayMethods;
 use pyo3::prelude::*;
 use quatfilt_core::reconstruction::features;
 
-/// Weighted rotation vectors from the means, `(frames, joints, 4)`, `(joints, 4)`, `(joints)` → `(frames, 3·joints)`.
+/// Weighted rotation vectors relative to the means, `(frames, joints, 4)`, `(joints, 4)`, `(joints)` → `(frames,
+/// 3·joints)`.
 #[pyfunction]
 #[pyo3(signature = (q, means, weights, /))]
 pub(crate) fn pose_features(

@@ -5,7 +5,7 @@ use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use quatfilt_core::reconstruction::heading;
 
-/// Headings about the axis `up` and what is left of the rotations, `(frames, 4)` → `(frames)`, `(frames, 4)`.
+/// Headings about the axis `up` and the remaining rotations, `(frames, 4)` → `(frames)`, `(frames, 4)`.
 #[pyfunction]
 #[pyo3(signature = (roots, up, /))]
 pub(crate) fn split_heading(

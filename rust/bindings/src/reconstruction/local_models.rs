@@ -1,4 +1,4 @@
-//! The next pose, by a model of its neighbours.
+//! Prediction of the next pose by a local model.
 
 use crate::array::{by_dtype, elements, input, output, run_interruptible};
 use crate::filters::names::named;
@@ -78,7 +78,7 @@ fn array(py: Python<'_>, shape: &[usize], elements: &[f64]) -> PyResult<Py<PyAny
     Ok(out.into_any().unbind())
 }
 
-/// The parameters of a model, by their names.
+/// The parameters of a model, with options by name.
 pub(super) fn options(
     model: &str,
     target: &str,

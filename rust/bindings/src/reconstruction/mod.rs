@@ -1,4 +1,4 @@
-//! Motion from a few trajectories.
+//! Motion from the trajectories of a few control points.
 
 pub(crate) mod features;
 pub(crate) mod heading;

@@ -1,4 +1,4 @@
-//! The most probable pose.
+//! The most probable pose given control points and a prior.
 
 use crate::array::{elements, input, numbers, output, run};
 use numpy::{PyArrayDyn, PyArrayMethods};
@@ -68,7 +68,7 @@ pub(crate) fn solve_pose(
     ))
 }
 
-/// The skeleton with its control points, of arrays of int64 and float64.
+/// The skeleton with its control points, from arrays of int64 and float64.
 pub(super) fn body(
     parents: &Bound<'_, PyAny>,
     offsets: &Bound<'_, PyAny>,
@@ -85,7 +85,7 @@ pub(super) fn body(
     Body::new(&parents, &numbers("offsets", offsets)?, &points, up).map_err(crate::array::to_python)
 }
 
-/// A fresh array of these numbers.
+/// A fresh array with these values.
 pub(super) fn array(py: Python<'_>, shape: &[usize], values: &[f64]) -> PyResult<Py<PyAny>> {
     let out: Bound<'_, PyArrayDyn<f64>> = output(py, shape);
     out.readwrite().as_slice_mut()?.copy_from_slice(values);

@@ -1,4 +1,4 @@
-//! Motion from trajectories of some joints.
+//! Motion from the trajectories of control points.
 
 use crate::array::{BUG, elements, input, numbers, run, run_interruptible, to_python};
 use crate::reconstruction::local_models;
@@ -16,11 +16,11 @@ use quatfilt_core::search::poses::graph::Graph;
 use quatfilt_core::search::poses::walk::Fallback;
 use std::sync::{Arc, Mutex, TryLockError};
 
-/// Nanoseconds that a frame takes beside the search, by which it is decided whether to listen for Ctrl-C.
+/// Estimated nanoseconds per frame besides the search, for the decision to check for Ctrl-C.
 const FRAME: usize = 500_000;
 
-/// The arrays of a database: rotations, heading, translation, trajectories, starts, features, mean rotations, joint weights, the graph or
-/// none, and the tables that trackers share, or none.
+/// The arrays of a database: rotations, heading, translation, trajectories, starts, features, mean rotations, joint
+/// weights, the graph or `None`, and the shared tables or `None`.
 type Arrays<'py> = (
     Bound<'py, PyAny>,
     Bound<'py, PyAny>,
@@ -34,13 +34,13 @@ type Arrays<'py> = (
     Option<Bound<'py, TrackerTables>>,
 );
 
-/// What trackers of the same arrays, options and control points share.
+/// Tables shared by the trackers of the same arrays, options and control points.
 #[pyclass(frozen, module = "quatfilt._core")]
 pub(crate) struct TrackerTables(Arc<Tables>);
 
 #[pymethods]
 impl TrackerTables {
-    /// Empty ones, which the first frame of a tracker fills.
+    /// Empty tables, filled by the first frame of a tracker.
     #[new]
     fn new() -> Self {
         Self(Arc::default())
@@ -52,7 +52,7 @@ impl TrackerTables {
     }
 }
 
-/// The tables that trackers share, or some of its own.
+/// The shared tables, or new ones.
 fn tables(poses: &Arrays<'_>) -> Arc<Tables> {
     poses.9.as_ref().map_or_else(Arc::default, |tables| Arc::clone(&tables.get().0))
 }
@@ -63,7 +63,7 @@ type OptionsTuple = (usize, usize, usize, usize, Vec<usize>, f64, usize, [f64; 1
 /// Model, target, deviation, bandwidth, ridge, share.
 type Model = (String, String, String, f64, f64, f64);
 
-/// Recent poses, place and heading.
+/// Recent poses, position and heading.
 type Initial<'py> = (Bound<'py, PyAny>, [f64; 3], f64);
 
 type Tracked = (Py<PyAny>, Py<PyAny>, Py<PyAny>);
@@ -130,7 +130,7 @@ fn graph<'a>(array: &'a PyReadonlyArrayDyn<'_, i32>) -> PyResult<Graph<'a>> {
     Graph::new(elements("graph", array)?, poses, degree).map_err(to_python)
 }
 
-/// A tracker of a body, with its options.
+/// A tracker of a body with its options.
 fn tracker(
     body: Body,
     tuple: OptionsTuple,
@@ -162,8 +162,8 @@ fn tracker(
     Tracker::new(body, options, state, tables).map_err(to_python)
 }
 
-/// Rotations `(frames, joints, 4)`, translation `(frames, 3)` and energies `(frames, 2)` of the motion that follows
-/// trajectories `(frames, points, …)`.
+/// Rotations `(frames, joints, 4)`, translation `(frames, 3)` and energies `(frames, 2)` of a motion reconstructed
+/// from trajectories `(frames, points, …)`.
 #[pyfunction]
 #[pyo3(signature = (
     parents, offsets, points, up, poses, options, model, initial, positions, position_deviations, orientations,
@@ -232,7 +232,8 @@ pub(crate) fn track<'py>(
     ))
 }
 
-/// A tracker that takes control points frame by frame; the arguments are those of `track` before the trajectories.
+/// A tracker that processes control points frame by frame; the arguments are those of `track` before the
+/// trajectories.
 #[pyfunction]
 #[pyo3(signature = (parents, offsets, points, up, poses, options, model, initial, /))]
 #[allow(
@@ -257,7 +258,7 @@ pub(crate) fn track_stream<'py>(
     Ok(MotionTracker { poses, graph: graph.map(Bound::unbind), tracker: Mutex::new(tracker) })
 }
 
-/// A motion that follows control points as they come.
+/// Reconstructs a motion from control points, frame by frame.
 #[pyclass(frozen, module = "quatfilt._core")]
 pub(crate) struct MotionTracker {
     poses: [Py<PyAny>; 8],
@@ -267,8 +268,8 @@ pub(crate) struct MotionTracker {
 
 #[pymethods]
 impl MotionTracker {
-    /// Takes the control points of a frame, `(points, 3)`, `(points)`, `(points, 4)` and `(points)`; returns rotations
-    /// `(joints, 4)`, translation `(3)` and energies `(2)`.
+    /// Processes the control points of a frame, `(points, 3)`, `(points)`, `(points, 4)` and `(points)`; returns
+    /// rotations `(joints, 4)`, translation `(3)` and energies `(2)`.
     #[pyo3(signature = (positions, position_deviations, orientations, orientation_deviations, /))]
     fn push(
         &self,

@@ -5,7 +5,7 @@ use numpy::{PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use quatfilt_core::rotations::continuity;
 
-/// Signs flipped along time so that a path does not jump between `q` and `−q`, `(frames, joints, 4)`.
+/// Signs flipped along time so that a path has no jumps between `q` and `−q`, `(frames, joints, 4)`.
 #[pyfunction]
 #[pyo3(signature = (q, /))]
 pub(crate) fn continuous(py: Python<'_>, q: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {

@@ -42,7 +42,7 @@ pub(crate) fn to_euler(py: Python<'_>, q: &Bound<'_, PyAny>, axes: &str) -> PyRe
     Ok(out.into_any().unbind())
 }
 
-/// Euler angles made continuous along time, float64 `(frames, joints, 3)` that begin near `(joints, 3)`.
+/// Euler angles made continuous along time, float64 `(frames, joints, 3)`, starting near `(joints, 3)`.
 #[pyfunction]
 #[pyo3(signature = (angles, start, axes, /))]
 pub(crate) fn continuous_euler(

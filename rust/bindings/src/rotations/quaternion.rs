@@ -9,7 +9,7 @@ use quatfilt_core::{Error, Real};
 type Map<T> = fn(&[T], &mut [T]) -> Result<(), Error>;
 type Zip<T> = fn(&[T], &[T], &mut [T]) -> Result<(), Error>;
 
-/// Rows in, rows of `columns` out.
+/// Applies a kernel to rows; the result has rows of `columns`.
 fn map<T: Real + Element>(
     py: Python<'_>,
     name: &str,
@@ -28,7 +28,7 @@ fn map<T: Real + Element>(
     Ok(out.into_any().unbind())
 }
 
-/// Pairs of rows in, rows of `shape` out.
+/// Applies a kernel to pairs of rows; the result has rows of `shape`.
 fn zip<T: Real + Element>(
     py: Python<'_>,
     a: &Bound<'_, PyAny>,
@@ -95,7 +95,8 @@ pub(crate) fn geodesic_distance(
     by_dtype!(a, T => zip::<T>(py, a, b, None, quaternion::geodesic_distance))
 }
 
-/// Missing samples, the largest deviation from unit length, and where it is: `(frames, joints, 4)` → three numbers.
+/// Number of missing samples, largest deviation from unit length, and its index: `(frames, joints, 4)` → three
+/// numbers.
 #[pyfunction]
 #[pyo3(signature = (q, /))]
 pub(crate) fn scan(py: Python<'_>, q: &Bound<'_, PyAny>) -> PyResult<(usize, f64, usize)> {

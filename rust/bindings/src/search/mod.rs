@@ -1,4 +1,4 @@
-//! Search for similar patches and poses.
+//! Nearest-neighbour search for patches and poses.
 
 pub(crate) mod patch_neighbors;
 pub(crate) mod poses;

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use quatfilt_core::search::patch_neighbors::PatchNeighbors;
 use quatfilt_core::{ClipView, Real};
 
-/// The `k` nearest patches of every frame of `q`, in itself or in `library`, the clips of which have `lengths` frames:
+/// The `k` nearest patches of every frame of `q`, in `q` itself or in `library`, whose clips have `lengths` frames:
 /// indices and distances, `(frames, k)`.
 #[pyfunction]
 #[pyo3(signature = (q, library, lengths, patch_radius, k, exclusion, weights, /))]
@@ -54,7 +54,7 @@ fn typed<T: Real + Element>(
     Ok((indices.into_any().unbind(), distances.into_any().unbind()))
 }
 
-/// Clips that lie one after the other in an array.
+/// Views of concatenated clips.
 pub(crate) fn clips<'a, T: Real + Element>(
     name: &str,
     array: &'a PyReadonlyArrayDyn<'_, T>,

@@ -12,9 +12,9 @@ use quatfilt_core::search::poses::{self, Index, Layout, Nearest, Segments};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The `k` segments of `features`, `(poses, dims)`, nearest to each of `queries`, `(queries, length, dims)`: numbers of their
-/// last poses, and distances, `(queries, k)`. `excluded`, `(queries, 2)`, are first numbers that do not count, and first that do
-/// again.
+/// The `k` segments of `features`, `(poses, dims)`, nearest to each of `queries`, `(queries, length, dims)`: indices
+/// of their last poses, and distances, `(queries, k)`. `excluded`, `(queries, 2)`, are half-open ranges of indices
+/// that are left out.
 #[pyfunction]
 #[pyo3(signature = (features, starts, queries, k, successors, excluded, /))]
 pub(crate) fn nearest_segments(
@@ -95,7 +95,7 @@ pub(crate) fn neighbor_graph(
     })
 }
 
-/// A search along a motion, with what it keeps from frame to frame.
+/// A search along a motion, with its state from frame to frame.
 #[pyclass(module = "quatfilt._core")]
 pub(crate) struct SegmentWalk {
     inner: Inner,
@@ -122,7 +122,7 @@ enum Search<T> {
     Along(Along<T>),
 }
 
-/// A search along a motion for the `k` nearest segments, that starts with the next frame that is asked for; exact without a graph.
+/// A search along a motion for the `k` nearest segments; exact without a graph.
 #[pyfunction]
 #[pyo3(signature = (features, starts, graph, k, length, successors, breadth, refresh, ratio, /))]
 #[allow(clippy::too_many_arguments, reason = "the reference's positional arguments")]
@@ -176,8 +176,8 @@ fn state<T: Real + Element>(
 
 #[pymethods]
 impl SegmentWalk {
-    /// The segments nearest to `query`, `(length, dims)`, but for those from `first` to before `last`; and whether all were
-    /// looked at.
+    /// The segments nearest to `query`, `(length, dims)`, except for those with indices in `first..last`; and whether
+    /// it was a full search.
     #[pyo3(signature = (query, first, last, /))]
     fn next(
         &mut self,
@@ -193,7 +193,7 @@ impl SegmentWalk {
         }
     }
 
-    /// Forgets the frames before.
+    /// Discards the state of the previous frames.
     fn reset(&mut self) {
         match &mut self.inner {
             Inner::Float32(state) => state.search.reset(),
@@ -257,7 +257,7 @@ fn segments<'a, T: Real + Element>(
     Segments::new(elements("features", features)?, dims, starts, length, successors).map_err(to_python)
 }
 
-/// A copy of an array of int64, as numbers of poses.
+/// A copy of an array of int64, as indices of poses.
 fn numbers(name: &str, array: &Bound<'_, PyAny>) -> PyResult<Vec<usize>> {
     let array = input::<i64>(name, array)?;
     let numbers = elements(name, &array)?.iter().map(|&number| usize::try_from(number));

@@ -6,7 +6,7 @@ use crate::rotations::quaternion::{product, rotate};
 use crate::simd::multiversion;
 use crate::{ClipView, Error, Real, parallel};
 
-/// Frames per tile: the rotations and positions of a whole body stay in the second-level cache.
+/// Frames per tile: the rotations and positions of a whole body fit in the second-level cache.
 const TILE: usize = 64;
 
 /// Planes of a joint: its global rotation, and its position.
@@ -83,7 +83,8 @@ multiversion! {
 /// translation, `(frames, 3)`.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit; [`Error::Parameter`] unless parents precede their children.
+/// [`Error::Length`] if the lengths of slices do not agree; [`Error::Parameter`] unless parents precede their
+/// children.
 pub fn forward_kinematics<T: Real>(
     rotations: ClipView<'_, T>,
     translation: &[T],
@@ -112,10 +113,10 @@ pub fn forward_kinematics<T: Real>(
     })
 }
 
-/// Positions of the joints of a skeleton whose joints move in their parents, `(frames, joints, 3)`.
+/// Positions of the joints of a skeleton with moving joint translations, `(frames, joints, 3)`.
 ///
-/// As [`forward_kinematics`], with an offset for each frame: `x_j = x_p + g_p t_j g_p⁻¹`, and `x = t` at a root, of which
-/// there may be several.
+/// As [`forward_kinematics`], with an offset for each frame: `x_j = x_p + g_p t_j g_p⁻¹`, and `x = t` at a root.
+/// There may be several roots.
 ///
 /// # Errors
 /// As [`forward_kinematics`].

@@ -1,7 +1,7 @@
-//! Sign continuity: of `q` and `−q`, which rotate alike, the one nearer to the sample before.
+//! Sign continuity: of `q` and `−q`, which are the same rotation, the one nearer to the previous sample.
 //!
-//! Each tile of frames is made continuous by itself; the sign of a whole tile follows from its first sample and the
-//! last one of the tiles before it. Signs are exact, so the result does not depend on the tiles.
+//! Each tile of frames is made continuous separately. The sign of a whole tile follows from its first sample and the
+//! last one of the previous tiles. Signs are exact, so the result does not depend on the tiles.
 
 use super::quaternion::{dot, is_missing, negative, of_row};
 use crate::error::check_length;
@@ -11,27 +11,28 @@ use crate::{ClipMut, ClipView, Error, Real, parallel};
 /// Samples per task.
 const TILE: usize = 32 * 1024;
 
-/// Both ends of a tile, per joint: its first and last valid samples as they came, zeros where all are missing.
+/// Both ends of a tile, per joint: its first and last valid samples in the input, zeros if all are missing.
 struct Ends<T> {
     first: Vec<[T; 4]>,
     last: Vec<Last<T>>,
 }
 
-/// The last valid sample of a joint as it came, and whether its sign was flipped.
+/// The last valid sample of a joint in the input, and whether its sign was flipped.
 #[derive(Debug, Clone, Copy, Default)]
 struct Last<T> {
     sample: [T; 4],
     flipped: bool,
 }
 
-/// What decides about the sign: `a · b < 0`, in float64 so that rounding does not.
+/// Whether `a · b < 0`, in float64, so that rounding does not decide the sign.
 #[inline(always)]
 fn opposite<T: Real>(a: [T; 4], b: [T; 4]) -> bool {
     dot(a.map(T::to_f64), b.map(T::to_f64)) < 0.0
 }
 
 multiversion! {
-    /// Makes `out` continuous, frame by frame; `last` speaks of the samples before, and of those of the end afterwards.
+    /// Makes `out` continuous, frame by frame; `last` are the last samples before the tile on entry, and those of the
+    /// tile on return.
     fn unroll<T: Real>(out: &mut [T], last: &mut [Last<T>]) {
         for frame in out.chunks_exact_mut(last.len() * 4) {
             for (row, last) in frame.chunks_exact_mut(4).zip(last.iter_mut()) {
@@ -106,7 +107,8 @@ fn unroll_tiles<T: Real>(source: Option<&[T]>, clip: &mut [T], joints: usize) ->
 
 /// Flips signs so that consecutive valid samples of a joint have an inner product `≥ 0`.
 ///
-/// The first valid sample keeps its sign, and so does the path where two samples are exactly half a turn apart. Missing samples stay as they are, and continuity goes across them.
+/// The first valid sample keeps its sign. If two samples are exactly 180° apart, the sign does not change. Missing
+/// samples are unchanged, and continuity extends across them.
 ///
 /// # Errors
 /// [`Error::Length`] if the clips differ in length.
@@ -126,7 +128,7 @@ pub(crate) fn make_continuous<T: Real>(clip: &mut [T], joints: usize) -> Result<
 mod tests {
     use super::*;
 
-    /// A path whose samples turn by a small angle, with pseudo-random signs and gaps.
+    /// A path with small rotations between samples, and with pseudo-random signs and gaps.
     fn path(frames: usize, joints: usize) -> Vec<f64> {
         let mut state = 1_u64;
         let mut random = || {

@@ -1,9 +1,9 @@
-//! Euler angles: rotations as three turns about coordinate axes, as files hold them.
+//! Euler angles: rotations as three successive rotations about coordinate axes, as in motion files.
 //!
-//! The angles `(a₀, a₁, a₂)` about the axes `(i, j, k)`, each of x, y and z once, stand for `R = R_i(a₀)·R_j(a₁)·R_k(a₂)`:
-//! each turn is about the axis as those before it have left it. The same rotation has a second triple
-//! `(a₀ + π, π − a₁, a₂ + π)`, and whole turns may be added to each angle. Where `a₁ = ±π/2`, the gimbal is locked: only
-//! `a₀ ± a₂` is determined.
+//! The angles `(a₀, a₁, a₂)` about the axes `(i, j, k)`, a permutation of x, y and z, represent `R =
+//! R_i(a₀)·R_j(a₁)·R_k(a₂)`: each rotation is about the axis as rotated by the previous ones. The same rotation has a
+//! second triple `(a₀ + π, π − a₁, a₂ + π)`, and multiples of 2π may be added to each angle. At `a₁ = ±π/2` there is
+//! gimbal lock: only `a₀ ± a₂` is determined.
 //!
 //! Reference: E. Bernardes, S. Viollet, "Quaternion to Euler angles conversion: a direct, general and computationally
 //! efficient method", PLOS ONE 17(11), 2022.
@@ -19,11 +19,11 @@ const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [1,
 /// The first orders are right-handed: `i × j = k`. In the others `i × j = −k`.
 const RIGHT_HANDED: usize = 3;
 
-/// Nearer to a gimbal lock than this (sine of half the angle that is left), the third angle is set to 0; the rotation
-/// changes by as much, which is below what the decimals of a file can hold.
+/// Distance from gimbal lock (sine of half the remaining angle) below which the third angle is set to 0. The rotation
+/// changes by as much, which is below the precision of the decimals in a file.
 const LOCK: f64 = 1e-12;
 
-/// As [`LOCK`] for the second angle of a triple that came from a file or from [`to_euler`], in radians.
+/// The same for the second angle of a triple from a file or from [`to_euler`], in radians.
 const NEARLY_LOCKED: f64 = 4e-12;
 
 /// The order of the axes of Euler angles.
@@ -73,7 +73,7 @@ fn angle_of<T: Real>(y: T, x: T) -> T {
     y.abs().atan2_nonnegative(x).copysign(y)
 }
 
-/// `angle` in `[−2π, 2π]`, moved by whole turns into `[−π, π]`.
+/// `angle` in `[−2π, 2π]`, moved by multiples of 2π to `[−π, π]`.
 #[inline(always)]
 fn wrapped<T: Real>(angle: T) -> T {
     let turn = T::TWO * T::PI;
@@ -81,8 +81,9 @@ fn wrapped<T: Real>(angle: T) -> T {
     if below < -T::PI { below + turn } else { below }
 }
 
-/// With `c' = ±a₂` by the parity: `qw + qj` and `qi + qk'` are cosine and sine of `(a₀ + c')/2` times one factor,
-/// `qw − qj` and `qi − qk'` those of `(a₀ − c')/2` times another; the tangent of `a₁/2 + π/4` is the ratio of the two.
+/// Let `c' = ±a₂` by the parity. `qw + qj` and `qi + qk'` are the cosine and sine of `(a₀ + c')/2` times one factor,
+/// `qw − qj` and `qi − qk'` those of `(a₀ − c')/2` times another. The tangent of `a₁/2 + π/4` is the ratio of the two
+/// factors.
 #[inline(always)]
 fn split<T: Real>(order: usize, q: [T; 4]) -> [T; 3] {
     let [i, j, k] = ORDERS[order];
@@ -133,7 +134,7 @@ fn combine_far(order: usize, angles: &[f64], out: &mut [f64]) {
 /// Unit quaternions of Euler angles in radians, `(n, 3)` → `(n, 4)`; NaN where an angle is NaN.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit.
+/// [`Error::Length`] if the lengths of slices do not agree.
 pub fn from_euler(angles: &[f64], axes: Axes, out: &mut [f64]) -> Result<(), Error> {
     check_length("out", angles.len() / 3 * 4, out.len())?;
     let combine = match axes.0 {
@@ -157,10 +158,11 @@ pub fn from_euler(angles: &[f64], axes: Axes, out: &mut [f64]) -> Result<(), Err
 
 /// Euler angles of quaternions in radians, `(n, 4)` → `(n, 3)`: the second in `[−π/2, π/2]`, the others in `[−π, π]`.
 ///
-/// Neither sign nor length of a quaternion matters; NaN for missing samples. In a gimbal lock the third angle is 0.
+/// The result does not depend on the sign and length of a quaternion; NaN for missing samples. In gimbal lock the
+/// third angle is 0.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit.
+/// [`Error::Length`] if the lengths of slices do not agree.
 pub fn to_euler(q: &[f64], axes: Axes, out: &mut [f64]) -> Result<(), Error> {
     check_length("out", q.len() / 4 * 3, out.len())?;
     let split = match axes.0 {
@@ -174,7 +176,7 @@ pub fn to_euler(q: &[f64], axes: Axes, out: &mut [f64]) -> Result<(), Error> {
     rows(q.len() / 4, 12, out, 3, |r, out| split(&q[r.start * 4..r.end * 4], out))
 }
 
-/// The angle that differs from `angle` by whole turns and lies nearest to `target`.
+/// The angle that differs from `angle` by a multiple of 2π and is nearest to `target`.
 fn near(angle: f64, target: f64) -> f64 {
     const TURN: f64 = 2.0 * std::f64::consts::PI;
     angle + TURN * ((target - angle) / TURN).round_ties_even()
@@ -186,7 +188,7 @@ fn nearest(angles: [f64; 3], before: [f64; 3], parity: f64) -> [f64; 3] {
     let [mut first, second, mut third] = angles;
     let over = second.abs() - FRAC_PI_2;
     if over.abs() < NEARLY_LOCKED {
-        // The third angle is free: it stays what it was, and the first makes up for it.
+        // The third angle is free: it keeps its previous value, and the first compensates for it.
         first += parity.copysign(parity * second) * (third - before[2]);
         third = before[2];
     }
@@ -198,12 +200,12 @@ fn nearest(angles: [f64; 3], before: [f64; 3], parity: f64) -> [f64; 3] {
 
 /// Euler angles made continuous along time, in radians, `(frames, joints, 3)`.
 ///
-/// Each triple becomes the one of the same rotation that is nearest to the triple before it, the first one nearest to
-/// `start`, `(joints, 3)`. Triples with NaN stay as they are, and continuity goes across them; a joint whose start has NaN
-/// begins with its first triple.
+/// Each triple is replaced by the one of the same rotation nearest to the previous triple; the first one by that
+/// nearest to `start`, `(joints, 3)`. Triples with NaN are unchanged, and continuity extends across them; a joint
+/// whose start has NaN begins with its first triple.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit.
+/// [`Error::Length`] if the lengths of slices do not agree.
 pub fn continuous_euler(angles: &[f64], start: &[f64], axes: Axes, out: &mut [f64]) -> Result<(), Error> {
     check_length("out", angles.len(), out.len())?;
     let mut before: Vec<[f64; 3]> = start.chunks_exact(3).map(|row| [row[0], row[1], row[2]]).collect();

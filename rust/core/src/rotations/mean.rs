@@ -16,28 +16,28 @@ const COLUMNS: usize = 16;
 /// Rows per task; the sums of a task are taken in `T`, those of the tasks in float64.
 const TASK_ROWS: usize = 512;
 
-/// Rows that are gone through column by column: they stay in the first-level cache.
+/// Rows that are processed column by column: they fit in the first-level cache.
 const CHUNK_ROWS: usize = 16;
 
 /// Clips longer than this are first solved on a subset of about as many frames.
 const SUBSET_FRAMES: usize = 4096;
 
-/// Newton steps at most; a handful is enough unless the mean is not unique.
+/// Largest number of Newton steps; a few suffice unless the mean is not unique.
 const MAX_STEPS: usize = 100;
 
-/// What a pass sums per joint: the total weight, and the 10 entries of `q qᵀ` or the gradient, `φ cot φ` and the 6
-/// entries of the rest of the Hessian.
+/// Sums of a pass per joint: the total weight; then the 10 entries of `q qᵀ`, or the gradient, `φ cot φ` and the 6
+/// other entries of the Hessian.
 const SUMS: usize = 11;
 
 type Sums = [f64; SUMS];
 
 /// Karcher means of all joints of a clip, `w ≥ 0`; NaN where no sample has weight.
 ///
-/// `weights` are `(frames, joints)`, not negative; missing samples (NaN or zero) have none. The signs and lengths of the
-/// samples do not matter.
+/// `weights` are `(frames, joints)`, not negative; missing samples (NaN or zero) have weight 0. The result does not
+/// depend on the signs and lengths of the samples.
 ///
 /// # Errors
-/// [`Error::Length`] if the weights do not fit the clip; [`Error::Interrupted`].
+/// [`Error::Length`] if the shape of the weights is not that of the clip; [`Error::Interrupted`].
 pub fn mean<T: Real>(
     clip: ClipView<'_, T>,
     weights: Option<&[T]>,
@@ -75,7 +75,7 @@ fn solve<T: Real>(
     means: &mut [[f64; 4]],
     interrupt: &Interrupt,
 ) -> Result<(), Error> {
-    // Newton's error after a step is a few hundredths of the step's square.
+    // The error after a Newton step is a few hundredths of the step's square.
     let enough = (16.0 * T::EPSILON.to_f64()).sqrt();
     let mut before = vec![f64::INFINITY; means.len()];
     for _ in 0..MAX_STEPS {
@@ -84,7 +84,7 @@ fn solve<T: Real>(
         for ((mean, sums), before) in means.iter_mut().zip(&sums).zip(&mut before) {
             let gradient = [sums[1] / sums[0], sums[2] / sums[0], sums[3] / sums[0]];
             let length = norm(gradient);
-            // Where Newton does not shorten the gradient, the plain step does.
+            // If Newton's step did not shorten the gradient, a gradient step does.
             let step = if length < *before { newton_step(gradient, sums) } else { gradient };
             *before = length;
             if step.iter().all(|x| x.is_finite()) {
@@ -111,7 +111,7 @@ fn newton_step(g: [f64; 3], sums: &Sums) -> [f64; 3] {
     let [yy, yz, zz] = [sums[8] / n + diagonal, sums[9] / n, sums[10] / n + diagonal];
     let (cx, cy, cz) = (yy * zz - yz * yz, yz * xz - xy * zz, xy * yz - yy * xz);
     let determinant = xx * cx + xy * cy + xz * cz;
-    // A determinant near 0 stands for samples half a turn away, where the Hessian says little.
+    // A determinant near 0 means samples about 180° away, where the Hessian is unreliable.
     if determinant < 1e-6 {
         return g;
     }
@@ -124,7 +124,7 @@ fn newton_step(g: [f64; 3], sums: &Sums) -> [f64; 3] {
 
 /// The main eigenvector of the symmetric 4 × 4 matrix whose upper triangle is `sums[1..]`, by repeated squaring.
 fn main_direction(sums: &Sums) -> [f64; 4] {
-    /// Squarings: eigenvalues whose ratio is above `1 + 2⁻⁴⁰` are told apart.
+    /// Number of squarings: they separate eigenvalues whose ratio is above `1 + 2⁻⁴⁰`.
     const SQUARINGS: usize = 46;
     let mut m = [
         [sums[1], sums[2], sums[3], sums[4]],
@@ -145,12 +145,12 @@ fn main_direction(sums: &Sums) -> [f64; 4] {
     unit(m[largest])
 }
 
-/// What adds the frames of some columns: [`add_moments`] or [`add_newton`].
+/// Kernel that adds the frames of some columns: [`add_moments`] or [`add_newton`].
 type Kernel<T> = fn(&Columns<'_, T>, &[[T; 4]; COLUMNS], &mut [[T; COLUMNS]; SUMS]);
 
 /// Sums of `kernel` at `means` over every `stride`-th row, per joint.
 ///
-/// A row is a frame, or as many frames as fill a vector if there are few joints.
+/// A row is one frame, or with few joints as many frames as fill a vector.
 fn pass<T: Real>(
     clip: ClipView<'_, T>,
     weights: Option<&[T]>,
@@ -167,7 +167,8 @@ fn pass<T: Real>(
     let (samples, _) = clip.data().as_chunks::<4>();
     let length = joints * COLUMNS.div_ceil(joints);
     let rows = samples.len() / length;
-    // The last block overlaps the one before it rather than being narrower; `from` is its first column that counts.
+    // The last block overlaps the previous one, so that all have the same width; `from` is its first column that is
+    // used.
     let blocks: Vec<Block<T>> = (0..length)
         .step_by(COLUMNS)
         .map(|from| {
@@ -179,7 +180,7 @@ fn pass<T: Real>(
     let used = rows.div_ceil(stride);
     let mut tasks: Vec<Range<usize>> =
         (0..used).step_by(TASK_ROWS).map(|first| first..(first + TASK_ROWS).min(used)).collect();
-    // Frames that do not fill a row; a subset can do without them.
+    // Frames that do not fill a row; a subset omits them.
     if stride == 1 && rows * length < samples.len() {
         tasks.push(rows..rows + 1);
     }
@@ -256,7 +257,7 @@ impl<T: Real> Columns<'_, T> {
     }
 }
 
-/// [`COLUMNS`] entries from `at`, with zeros beyond the end.
+/// [`COLUMNS`] entries from `at` on, padded with zeros past the end.
 #[inline(always)]
 fn filled<V: Copy + Default>(values: &[V], at: usize) -> [V; COLUMNS] {
     if let Some(full) = values.get(at..at + COLUMNS) {

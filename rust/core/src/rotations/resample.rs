@@ -6,7 +6,7 @@ use crate::error::check_length;
 use crate::simd::multiversion;
 use crate::{ClipMut, ClipView, Error, Real, parallel};
 
-/// Rows per chunk: planes that stay in the first-level cache.
+/// Rows per chunk: their planes fit in the first-level cache.
 const CHUNK: usize = 64;
 
 /// Rows per task.
@@ -15,13 +15,13 @@ const TASK: usize = 8 * 1024;
 /// A new time between two samples.
 #[derive(Debug, Clone, Copy)]
 struct Place {
-    /// The frame on its left.
+    /// The frame before it.
     left: usize,
-    /// How far it is on the way to the next frame, 0 … 1.
+    /// The fraction of the interval to the next frame, 0 … 1.
     part: f64,
 }
 
-/// Places `time` among `times`; the last interval holds its right end too.
+/// Locates `time` among `times`; the last interval includes its right end.
 fn place(times: &[f64], time: f64) -> Place {
     if times.len() < 2 {
         return Place { left: 0, part: 0.0 };
@@ -31,7 +31,7 @@ fn place(times: &[f64], time: f64) -> Place {
     Place { left, part: (time - times[left]) / (times[left + 1] - times[left]) }
 }
 
-/// A rotation on the way from `a` to `b`; at either end the unit quaternion that is there.
+/// A rotation between `a` and `b`; at both ends exactly the normalised quaternion.
 #[inline(always)]
 pub(crate) fn between_neighbours<T: Real>(a: [T; 4], b: [T; 4], part: T) -> [T; 4] {
     let (a, b) = (unit(a), unit(b));
@@ -89,11 +89,12 @@ multiversion! {
 
 /// Rotations at new times, each on the shorter geodesic between its two neighbours: `(new times, joints, 4)`.
 ///
-/// `q(t) = q_i · exp(u log(q_i⁻¹ q_{i+1}))` with `u = (t − t_i) / (t_{i+1} − t_i)`. At the time of a sample it is that
-/// sample; next to a missing sample it is NaN. `times` increase strictly, and `new_times` lie in their range.
+/// `q(t) = q_i · exp(u log(q_i⁻¹ q_{i+1}))` with `u = (t − t_i) / (t_{i+1} − t_i)`. At the time of a sample the
+/// result is that sample; next to a missing sample it is NaN. `times` increase strictly, and `new_times` are in their
+/// range.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit; [`Error::Parameter`] for new times without any sample.
+/// [`Error::Length`] if the lengths of slices do not agree; [`Error::Parameter`] for new times without any sample.
 pub fn slerp<T: Real>(
     q: ClipView<'_, T>,
     times: &[f64],

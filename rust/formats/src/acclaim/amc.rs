@@ -1,4 +1,4 @@
-//! The motion: per frame its number, then one line of values per bone.
+//! The motion: for each frame its number, then one line of values per bone.
 
 use super::{AngleUnit, Motion, Skeleton};
 use crate::error::{Error, Note};
@@ -9,14 +9,14 @@ use std::ops::Range;
 
 /// Reads an AMC motion of `skeleton`.
 ///
-/// The values come in the order of the skeleton, whatever the order of the lines. A last frame that is cut short is
-/// dropped. A bone that a frame leaves out is missing there (NaN); one that no frame has stays at rest (zeros).
+/// The values are in the order of the skeleton, for any order of the lines. An incomplete last frame is dropped. A
+/// bone that a frame omits is missing there (NaN); a bone that all frames omit is in its rest pose (zeros).
 ///
-/// Cost: one pass over the text; memory is the values, eight bytes each.
+/// Cost: one pass over the text; memory is eight bytes per value.
 ///
 /// # Errors
-/// [`Error`] with line and reason where the text is no AMC, a bone is not of the skeleton, or has another number of
-/// values than degrees of freedom.
+/// [`Error`] with line and reason if the text is not AMC, a bone is not in the skeleton, or the number of its values
+/// differs from its degrees of freedom.
 pub fn parse_amc(bytes: &[u8], skeleton: &Skeleton) -> Result<Motion, Error> {
     let mut notes = Vec::new();
     let text = text::open(bytes, &mut notes)?;
@@ -49,13 +49,13 @@ struct Parser<'a> {
     current: (usize, u64),
     /// The track of the last line.
     last: usize,
-    /// What `:DEGREES` or `:RADIANS` says, else the skeleton.
+    /// From `:DEGREES` or `:RADIANS`, else from the skeleton.
     angle: AngleUnit,
     has_angle: bool,
-    /// Where the numbers of frames first leap, and how many leaps there are.
+    /// First jump in the frame numbers, and the number of jumps.
     leap: Option<(usize, String)>,
     leaps: usize,
-    /// First line with a value that is no number, and how many there are.
+    /// First line with a value that is not a number, and the number of such values.
     missing: Option<usize>,
     missing_count: usize,
     notes: Vec<Note>,
@@ -64,11 +64,11 @@ struct Parser<'a> {
 struct Track<'a> {
     name: &'a str,
     columns: Range<usize>,
-    /// Frames that have it.
+    /// Number of frames that contain it.
     count: usize,
-    /// The last frame that has it, counted from 1; 0 for none.
+    /// The last frame that contains it, counted from 1; 0 for none.
     frame: usize,
-    /// The track that followed it in the frame before: files keep their order.
+    /// The track that followed it in the previous frame: files keep their order.
     next: usize,
 }
 
@@ -193,7 +193,7 @@ impl<'a> Parser<'a> {
             at_rest &= value == 0.0;
             got += 1;
         }
-        // Some files list bones without degrees of freedom all the same, with zeros.
+        // Some files list bones without degrees of freedom anyway, with zeros.
         if got != expected && !(expected == 0 && at_rest) {
             return Err(Error::at(line, format!("`{}`: expected {expected} values, got {got}", track.name)));
         }
@@ -202,7 +202,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    /// Drops a last frame whose last line is cut, or which lacks bones that other frames have.
+    /// Drops a last frame whose last line is incomplete, or which lacks bones that other frames have.
     fn drop_cut_frame(&mut self, reason: Option<String>) {
         let lacking = self
             .tracks

@@ -1,7 +1,8 @@
-//! Acclaim files: a skeleton (`.asf`) and motions of it (`.amc`).
+//! Acclaim files: a skeleton (`.asf`) and its motions (`.amc`).
 //!
-//! [`parse_asf`] reads the bones, [`parse_amc`] the values of their degrees of freedom. Both give what the files say,
-//! in the units they say: [`Units::angle`] for the axes of a skeleton, [`Motion::angle`] for the angles of a motion.
+//! [`parse_asf`] reads the bones, [`parse_amc`] the values of their degrees of freedom. Both return the contents of
+//! the files in the files' units: [`Units::angle`] for the axes of a skeleton, [`Motion::angle`] for the angles of a
+//! motion.
 
 mod amc;
 mod asf;
@@ -14,15 +15,15 @@ pub use asf::parse_asf;
 /// A skeleton, as an ASF file describes it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Skeleton {
-    /// What `:name` says; empty where it says nothing.
+    /// The `:name` entry; may be empty.
     pub name: String,
     /// Units of lengths and angles.
     pub units: Units,
     /// The root.
     pub root: Root,
-    /// The bones in the order of `:bonedata`, moved only where a bone would come before its parent.
+    /// The bones in the order of `:bonedata`, except that each comes after its parent.
     pub bones: Vec<Bone>,
-    /// What was repaired or assumed.
+    /// Repairs and assumptions.
     pub notes: Vec<Note>,
 }
 
@@ -61,9 +62,9 @@ pub struct Root {
     pub order: Vec<Dof>,
     /// Order of the axes of `orientation`: the first applies first.
     pub axis_order: [Axis; 3],
-    /// Where it lies at rest.
+    /// Position in the rest pose.
     pub position: [f64; 3],
-    /// How it is turned at rest: angles about the axes of `axis_order`.
+    /// Orientation in the rest pose: angles about the axes of `axis_order`.
     pub orientation: [f64; 3],
 }
 
@@ -74,15 +75,15 @@ pub struct Bone {
     pub name: String,
     /// Index of its parent among the bones, which comes before it; `None` for a bone that begins at the root.
     pub parent: Option<usize>,
-    /// Where it points in the global frame of the rest pose.
+    /// Direction in the global frame of the rest pose.
     pub direction: [f64; 3],
-    /// How long it is.
+    /// Length.
     pub length: f64,
-    /// Angles that turn the global frame into that of the bone, as the file lists them.
+    /// Angles of the rotation from the global frame to that of the bone, in the file's order.
     pub axis: [f64; 3],
     /// The axes of those angles: the first applies first.
     pub axis_order: [Axis; 3],
-    /// Its degrees of freedom in the order of their values; those it lacks are 0.
+    /// Its degrees of freedom in the order of their values; all others are 0.
     pub dof: Vec<Dof>,
     /// Lowest and highest value of each degree of freedom, possibly infinite; empty where the file gives none.
     pub limits: Vec<[f64; 2]>,
@@ -156,7 +157,7 @@ impl Dof {
     }
 }
 
-/// A motion of a skeleton, as an AMC file holds it. The file has no frame rate.
+/// A motion of a skeleton, as in an AMC file. The file has no frame rate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
     /// Values, frame after frame; in a frame those of the root, then bone after bone as in [`Skeleton::bones`], each
@@ -166,6 +167,6 @@ pub struct Motion {
     pub frames: usize,
     /// Unit of its angles.
     pub angle: AngleUnit,
-    /// What was repaired or assumed.
+    /// Repairs and assumptions.
     pub notes: Vec<Note>,
 }

@@ -6,7 +6,7 @@ use crate::text::{decode, is_blank, quote};
 use crate::{number, text};
 use std::collections::HashMap;
 
-/// Where the motion begins: after the word `MOTION`.
+/// Start of the motion: after the word `MOTION`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Start {
     pub(super) offset: usize,
@@ -99,7 +99,7 @@ struct Tree {
     joints: Vec<Joint>,
     /// Line on which each joint begins.
     lines: Vec<usize>,
-    /// Whether its OFFSET came.
+    /// Whether its OFFSET has been read.
     placed: Vec<bool>,
     /// Joints whose brace is open, the innermost last.
     open: Vec<usize>,
@@ -207,7 +207,7 @@ fn channels(cursor: &mut Cursor<'_>) -> Result<Vec<Channel>, Error> {
     Ok(channels)
 }
 
-/// Walks over words; braces are words of their own wherever they stand.
+/// Iterates over words; braces are always separate words.
 struct Cursor<'a> {
     text: &'a [u8],
     offset: usize,
@@ -219,7 +219,7 @@ impl<'a> Cursor<'a> {
         self.text.get(self.offset..).unwrap_or_default()
     }
 
-    /// Passes blanks and line ends.
+    /// Skips blanks and line ends.
     fn skip_blanks(&mut self) {
         while let Some(&byte) = self.text.get(self.offset) {
             if !is_blank(byte) {
@@ -231,7 +231,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// The next word, which is not passed; empty at the end of the file.
+    /// The next word, without advancing; empty at the end of the file.
     fn peek(&mut self) -> &'a [u8] {
         self.skip_blanks();
         let rest = self.rest();
@@ -249,7 +249,7 @@ impl<'a> Cursor<'a> {
         word
     }
 
-    /// The rest of the line up to a brace: names may hold blanks.
+    /// The rest of the line up to a brace: names may contain blanks.
     fn name(&mut self) -> String {
         let rest = self.rest();
         let length = rest.iter().position(|&b| matches!(b, b'\n' | b'\r' | b'{')).unwrap_or(rest.len());

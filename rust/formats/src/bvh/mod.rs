@@ -1,6 +1,6 @@
 //! Biovision hierarchy files (`.bvh`): a tree of joints, then one row of channel values per frame.
 //!
-//! [`parse`] reads the dialects that are in use, [`write()`] makes files that it reads back as they were.
+//! [`parse`] reads the dialects in use; [`write()`] writes files that it reads back unchanged.
 
 mod hierarchy;
 mod motion;
@@ -11,7 +11,7 @@ use crate::text;
 
 pub use write::write;
 
-/// A BVH file, as it was read.
+/// The contents of a BVH file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct File {
     /// The joints in the order of the file, which is depth first: a parent comes before its children.
@@ -23,36 +23,36 @@ pub struct File {
     pub values: Vec<f64>,
     /// Number of frames.
     pub frames: usize,
-    /// What was repaired or assumed.
+    /// Repairs and assumptions.
     pub notes: Vec<Note>,
 }
 
 /// A joint of the hierarchy.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Joint {
-    /// Its name, which may hold blanks and colons.
+    /// Its name, which may contain blanks and colons.
     pub name: String,
-    /// Index of its parent; `None` for a root, of which there may be several.
+    /// Index of its parent; `None` for a root. There may be several roots.
     pub parent: Option<usize>,
-    /// Where it lies in its parent's frame.
+    /// Position in its parent's frame.
     pub offset: [f64; 3],
-    /// Its channels in the order of their values: rotations apply in this order, each about the axis turned by those
-    /// before it.
+    /// Its channels in the order of their values: rotations apply in this order, each about the axis as rotated by
+    /// the previous ones.
     pub channels: Vec<Channel>,
-    /// Its end sites: none, one, seldom more.
+    /// Its end sites: usually none or one.
     pub end_sites: Vec<EndSite>,
 }
 
 /// The end of a last bone.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct EndSite {
-    /// What follows the words `End Site`, such as `#5`.
+    /// Text after the words `End Site`, such as `#5`.
     pub name: Option<String>,
-    /// Where it lies in its joint's frame.
+    /// Position in its joint's frame.
     pub offset: [f64; 3],
 }
 
-/// What one column of the motion moves.
+/// Quantity in one column of the motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Channel {
     /// Position along x.
@@ -100,20 +100,20 @@ impl Channel {
     }
 }
 
-/// Time from one frame to the next, with the text that stood for it, so that a file keeps every digit of its own.
+/// Time from one frame to the next, with its text, so that files keep all digits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FrameTime {
     /// Seconds.
     pub seconds: f64,
-    /// The number as the file had it; what stands for `seconds` in a file that is written, where it reads so.
+    /// The number as in the file; written in place of `seconds` if it has that value.
     pub text: String,
 }
 
 impl FrameTime {
-    /// What a file without a usable `Frame Time` gets.
+    /// Frame time of a file without a usable `Frame Time`.
     pub const ASSUMED: f64 = 1.0 / 30.0;
 
-    /// A frame time that is written with as many digits as it needs.
+    /// A frame time that is written with as many digits as necessary.
     #[must_use]
     pub fn new(seconds: f64) -> Self {
         Self { seconds, text: format!("{seconds}") }
@@ -122,11 +122,11 @@ impl FrameTime {
 
 /// Reads a BVH file.
 ///
-/// Cost: one pass over the text, in parallel in a rayon pool; memory is the values, eight bytes each.
+/// Cost: one pass over the text, in parallel in a rayon pool; memory is eight bytes per value.
 ///
 /// # Errors
-/// [`Error`] with line and reason where the text is not BVH, is cut off before the first row of values, or where a row
-/// does not fit the channels.
+/// [`Error`] with line and reason if the text is not BVH, ends before the first row of values, or a row does not
+/// agree with the channels.
 pub fn parse(bytes: &[u8]) -> Result<File, Error> {
     let mut notes = Vec::new();
     let text = text::open(bytes, &mut notes)?;

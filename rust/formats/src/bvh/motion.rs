@@ -1,7 +1,7 @@
 //! The rows of values.
 //!
-//! A file whose lines are rows, each of the right length, is the rule: its rows are parsed in parallel straight into
-//! their places. Anything else is parsed again line by line, which then knows what to repair or where to refuse.
+//! In most files every line is a row of the right length: these rows are parsed in parallel. All other files are
+//! parsed again line by line, for repairs and precise messages.
 
 use super::FrameTime;
 use super::hierarchy::Start;
@@ -10,7 +10,7 @@ use crate::number;
 use crate::text::{Lines, decode, is_blank, line_feeds, quote, words};
 use rayon::prelude::*;
 
-/// Bytes that a thread parses at a time: large beside the cost of handing them over, small beside a file.
+/// Bytes that a thread parses at a time: large compared with the cost of a task, small compared with a file.
 const CHUNK: usize = 1 << 20;
 
 pub(super) struct Motion {
@@ -102,7 +102,7 @@ fn header(text: &[u8], start: Start, notes: &mut Vec<Note>) -> Result<Header, Er
     Ok(Header { declared, frame_time, rows })
 }
 
-/// The frame time of `line`; 1/30 s where there is none or it is no duration.
+/// The frame time of `line`; 1/30 s if there is none or it is not a duration.
 fn read_frame_time(found: Option<(usize, &[u8])>, start: usize, notes: &mut Vec<Note>) -> FrameTime {
     let Some((line, text)) = found else {
         notes.push(Note::at(start, "`Frame Time:` missing: 1/30 s assumed"));
@@ -115,7 +115,7 @@ fn read_frame_time(found: Option<(usize, &[u8])>, start: usize, notes: &mut Vec<
     FrameTime::new(FrameTime::ASSUMED)
 }
 
-/// What follows a keyword, with or without its colon, in upper or lower case.
+/// The text after a keyword, with or without its colon, in upper or lower case.
 fn after_keyword<'a>(line: &'a [u8], keyword: &[u8]) -> Option<&'a [u8]> {
     let (word, rest) = line.split_at_checked(keyword.len())?;
     let ends = rest.first().is_none_or(|&b| b == b':' || is_blank(b));
@@ -144,7 +144,7 @@ impl Rows<'_> {
         self.text.get(self.start.offset..).unwrap_or_default()
     }
 
-    /// All values if every line is a row of the right length; `None` if anything is out of the ordinary.
+    /// All values if every line is a row of the right length; `None` otherwise.
     fn in_parallel(&self) -> Option<Vec<f64>> {
         let body = self.body().trim_ascii_end();
         if body.is_empty() {
@@ -159,7 +159,7 @@ impl Rows<'_> {
             chunks.iter().map(|chunk| count_rows(chunk)).collect()
         };
         let total = counts.iter().sum::<usize>().checked_mul(self.channels)?;
-        // A value takes two bytes, one of them a blank: lines that are no rows must not ask for more memory than that.
+        // A value takes at least two bytes: lines that are not rows must not cause a larger allocation.
         if total > body.len() / 2 + 1 {
             return None;
         }
@@ -176,7 +176,7 @@ impl Rows<'_> {
         regular.then_some(values)
     }
 
-    /// All values, with a last row that is cut short dropped; refuses what does not fit.
+    /// All values, without an incomplete last row; an error for anything else.
     fn line_by_line(&self, declared: Option<usize>, notes: &mut Vec<Note>) -> Result<Vec<f64>, Error> {
         let mut values = Vec::with_capacity(self.body().len() / 16);
         let mut lines = Lines::from(self.text, self.start.offset, self.start.line);
@@ -219,7 +219,7 @@ impl Rows<'_> {
         Ok(values)
     }
 
-    /// All values if their number is what `Frames:` asks for, wherever lines end.
+    /// All values if their number agrees with `Frames:`, for any line breaks.
     fn wrapped(&self, declared: Option<usize>) -> Option<Vec<f64>> {
         let expected = declared?.checked_mul(self.channels)?;
         if expected > self.body().len() / 2 + 1 {
@@ -231,7 +231,7 @@ impl Rows<'_> {
     }
 }
 
-/// Cuts at line ends into pieces of about [`CHUNK`] bytes.
+/// Splits at line ends into pieces of about [`CHUNK`] bytes.
 fn chunks(mut body: &[u8]) -> Vec<&[u8]> {
     let mut chunks = Vec::with_capacity(body.len() / CHUNK + 1);
     while !body.is_empty() {
@@ -244,7 +244,7 @@ fn chunks(mut body: &[u8]) -> Vec<&[u8]> {
     chunks
 }
 
-/// Parses lines into their places; whether each of them was a row of `channels` values.
+/// Parses lines into `places`; returns whether each of them was a row of `channels` values.
 fn fill_rows(chunk: &[u8], places: &mut [f64], channels: usize) -> bool {
     let mut rest = chunk;
     for row in places.chunks_exact_mut(channels) {
@@ -264,7 +264,7 @@ fn fill_rows(chunk: &[u8], places: &mut [f64], channels: usize) -> bool {
     rest.is_empty()
 }
 
-/// Passes blanks inside a line.
+/// Skips blanks inside a line.
 #[inline]
 fn skip_blanks(mut rest: &[u8]) -> &[u8] {
     while let [b' ' | b'\t' | b'\r' | 0x0b | 0x0c, next @ ..] = rest {
@@ -273,7 +273,7 @@ fn skip_blanks(mut rest: &[u8]) -> &[u8] {
     rest
 }
 
-/// Makes infinities missing too, and says how many samples are missing.
+/// Replaces infinities by NaN, and notes the number of missing samples.
 fn note_missing(values: &mut [f64], rows: &Rows<'_>, notes: &mut Vec<Note>) {
     let mut missing = 0;
     for value in values.iter_mut().filter(|value| !value.is_finite()) {

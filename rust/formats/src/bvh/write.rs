@@ -10,19 +10,19 @@ use std::ops::Range;
 
 /// Values that a thread writes at a time.
 const CHUNK: usize = 1 << 16;
-/// Chunks written before they are gathered: bounds what is held twice.
+/// Chunks written before they are concatenated: limits the memory held twice.
 const BATCH: usize = 64;
 
-/// Makes a BVH file of `joints` and `values`, one row of channel values per frame as in [`File::values`](super::File).
+/// Writes a BVH file of `joints` and `values`, one row of channel values per frame as in
+/// [`File::values`](super::File).
 ///
-/// Read back with [`parse`](super::parse) it gives the same joints, frame time and values (values to the digits of
-/// `precision`, offsets exactly). Joints that are not depth first are written depth first, their columns with them.
+/// [`parse`](super::parse) reads the same joints, frame time and values back (values to the digits of `precision`,
+/// offsets exactly). Joints that are not in depth-first order are written in that order, with their columns.
 ///
 /// Cost: one pass over the values, in parallel in a rayon pool; memory is the text.
 ///
 /// # Errors
-/// [`Error`] without a line where a name, a parent, an offset, the frame time or the number of values cannot be
-/// written.
+/// [`Error`] without a line if a name, a parent, an offset, the frame time or the number of values cannot be written.
 pub fn write(
     joints: &[Joint],
     frame_time: &FrameTime,
@@ -63,7 +63,7 @@ pub fn write(
     Ok(out)
 }
 
-/// The text that came with the frame time, unless the time was changed since.
+/// The original text of the frame time, unless the time was changed.
 fn frame_time_text(frame_time: &FrameTime) -> Result<String, Error> {
     let FrameTime { seconds, text } = frame_time;
     if !(seconds.is_finite() && *seconds > 0.0) {
@@ -160,7 +160,7 @@ impl<'a> Tree<'a> {
     }
 }
 
-/// Refuses what a file cannot hold.
+/// Rejects values that a file cannot contain.
 fn check(joint: &Joint) -> Result<(), Error> {
     let Joint { name, offset, channels, end_sites, .. } = joint;
     let writable =

@@ -28,14 +28,14 @@ KNOWN = 2
 
 
 class Scores(NamedTuple):
-    """What each candidate did to each joint, summed over the measurements; arrays `(candidates · joints,)`."""
+    """Statistics of each candidate and joint, summed over the measurements; arrays `(candidates · joints,)`."""
 
     forecast_errors: Reals
     """Squares of the innovations, each times its confidence."""
     forecasts: Reals
     """Sum of these confidences."""
     residuals: Reals
-    """Squared ways from the smoothed values to the measurements, each times its confidence."""
+    """Squared distances between the smoothed values and the measurements, each times its confidence."""
     shares: Reals
     """Shares that the measurements have in their own smoothed values."""
 

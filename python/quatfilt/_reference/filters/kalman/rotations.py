@@ -24,7 +24,7 @@ FASTEST = np.pi
 
 
 class State(NamedTuple):
-    """What is known of each joint at one frame."""
+    """State of each joint at one frame."""
 
     rotation: Reals
     """`(joints, 4)`: the pose, or where the forecast was left."""
@@ -35,17 +35,17 @@ class State(NamedTuple):
     covariance: Covariance
 
     def forecast(self) -> Reals:
-        """Where the pose would be if the forecast were followed: the way from `rotation`, `(joints, 3)`."""
+        """Return the displacement from `rotation` to the pose that the forecast would reach, `(joints, 3)`."""
         return self.beyond[:, None] * self.velocity
 
 
 class Prediction(NamedTuple):
-    """What is expected one frame later."""
+    """Prediction for the next frame."""
 
     origin: Reals
     """`(joints, 4)`: the rotation from which ways are measured."""
-    way: Reals
-    """`(joints, 3)`: the expected way from there; zero unless the forecast is left."""
+    displacement: Reals
+    """`(joints, 3)`: the predicted displacement from there; zero unless the forecast has stopped."""
     left: Mask
     """`(joints,)`: whether the forecast is left."""
 
@@ -162,7 +162,7 @@ def smoothed(
 ) -> list[Reals]:
     """Smoothed rotations of the frames `last, last − 1 … first`, from what is known at frame `last`."""
     after = states[last]
-    # What is known better now: the way from the rotation of the state, and the velocity there.
+    # The smoothed state: displacement from the rotation of the filter state, and velocity there.
     displacement, velocity = after.forecast(), after.velocity
     heard = np.zeros(len(displacement), np.bool_)
     result = [after.rotation]
@@ -175,7 +175,7 @@ def smoothed(
         velocity = np.where(measured, carried(carried(velocity, displacement), -seen), velocity)
         displacement = np.where(measured, seen, displacement)
         heard |= trust[frame + 1] > 0
-        # What it differs by from what was expected; nothing where no sample came since. And as seen from here.
+        # Difference from the prediction, zero without a later sample; in the coordinates of this frame.
         surprise = np.where(heard[:, None], displacement - expected, 0)
         change = np.where(heard[:, None], velocity - state.velocity, 0)
         surprise = np.where(left[:, None], surprise, carried(surprise, -state.velocity))

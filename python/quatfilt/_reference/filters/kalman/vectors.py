@@ -12,7 +12,7 @@ UNKNOWN_VELOCITY = 1e10
 
 
 class State(NamedTuple):
-    """What is known of each column at one frame; arrays `(columns,)`."""
+    """State of each column at one frame; arrays `(columns,)`."""
 
     value: Reals
     velocity: Reals

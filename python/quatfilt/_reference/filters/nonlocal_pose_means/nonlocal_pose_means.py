@@ -29,7 +29,7 @@ def nonlocal_pose_means(
     library: Reals | None,
     lengths: list[int],
 ) -> tuple[Reals, Reals | None]:
-    """Average each frame `t` with the frames `s` of its window, weighted by the likeness of their patches.
+    """Average each frame `t` with the frames `s` of its window, weighted by the similarity of their patches.
 
     The weight of `s` is `f(t, s) = exp(−E(t, s))` with the patch distance `E` of :func:`.candidates.patch_distances`, and 0 where
     `E > 120`. The frame itself has the largest weight of the others, at least `exp(−80)`. With the rotation vectors `x` of the chart,

@@ -13,7 +13,7 @@ from quatfilt._reference.rotations.quaternion import between, is_missing, multip
 def body_geodesics(
     q: Reals, means: Reals, components: int, most: int, objective: str, tolerance: float
 ) -> tuple[Reals, Reals, Reals]:
-    """Fit geodesics of whole poses through the means, one after the other, each to what the ones before leave.
+    """Fit successive geodesics of whole poses through the means, each to the residuals of the previous ones.
 
     A pose is a point of the product of all joints' rotations, and its distance to another one `√(Σ_j d_j²)`. The geodesic
     with the direction `v`, a unit vector of `R^{3J}`, is `c_v(s) = (exp(s v_1), …, exp(s v_J))`, up to where its fastest
@@ -27,11 +27,11 @@ def body_geodesics(
     means : array (joints, 4)
         Unit quaternions.
     components : int
-        How many geodesics; 0 for as many as it takes until `R_k` is at most `tolerance`.
+        Number of geodesics; 0 for as many as it takes until `R_k` is at most `tolerance`.
     most : int
         The most geodesics where `components` is 0.
     objective : {"geodesic", "squared", "chordal"}
-        What is minimised: the mean of the distance to the geodesic, of its square, or of the sum over the joints of
+        The objective: the mean of the distance to the geodesic, of its square, or of the sum over the joints of
         `1 − cos d_j`, whose nearest point is taken for this.
     tolerance : float, radians of rotation
 
@@ -43,7 +43,7 @@ def body_geodesics(
     residuals : array (k,), radians of rotation
         `R_k`, the mean distance that the first k geodesics leave; NaN without poses.
     descents : array (k, steps)
-        The objective, of distances on S³, on the way to each direction, which never rises; NaN after the last step.
+        The objective, of distances on S³, at the steps of each descent; it never increases. NaN after the last step.
     """
     joints = q.shape[1]
     x = poses(q, means)
@@ -82,9 +82,9 @@ def poses(q: Reals, means: Reals) -> Reals:
 
 
 def next_direction(x: Reals, before: Reals | None, objective: str) -> tuple[Reals, list[float]]:
-    """Direction of the geodesic that is nearest to the poses, and the objectives on the way; `before` is the last one.
+    """Direction of the geodesic nearest to the poses, and the objectives of the descent; `before` is the previous one.
 
-    Joints that rest have no part in it. Where a single joint moves, its own nearest geodesic is the body's.
+    Joints that do not move have zero components. If a single joint moves, its own nearest geodesic is the body's.
     """
     joints = x.shape[1]
     moving = np.any(norm(x[..., 1:]) > NOTHING_LEFT, axis=0)
@@ -109,7 +109,7 @@ def parameters(x: Reals, v: Reals) -> Reals:
 
 
 def remainder(x: Reals, v: Reals, s: Reals) -> Reals:
-    """Return what a geodesic leaves of poses, `c_v(s)⁻¹ x` with `w ≥ 0`."""
+    """Return the residuals of poses from a geodesic, `c_v(s)⁻¹ x` with `w ≥ 0`."""
     left = between(points(s, v), x)
     lengths = norm(left)[..., None]
     return left / np.where(lengths > 0, lengths, 1) * np.copysign(1, left[..., :1])

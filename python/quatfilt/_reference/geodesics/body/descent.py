@@ -38,7 +38,7 @@ def descent(x: Reals, start: Reals, objective: str, steps: int = STEPS) -> tuple
     Where the mean distance has its minimum at a cone point, the direction of a pose, the descent ends near it, and steps
     onto it in the end if that is lower.
 
-    Returns the direction, the objective there, and the values on the way.
+    Returns the direction, the objective there, and the objectives of the descent.
     """
     v, here, values = descent_off_poses(x, start, objective, steps)
     if objective != "geodesic":

@@ -12,7 +12,7 @@ SUBSET = 512
 """Poses, at most, on which the starts descend: enough to tell valleys apart."""
 
 SUBSET_STEPS = 60
-"""Steps on the subset at most: what is left is done on all poses."""
+"""Largest number of steps on the subset; the final descent runs on all poses."""
 
 LOWER = 1e-12
 """Relative: a start that is not better by more is as good as the one before, and roundings do not choose between them."""

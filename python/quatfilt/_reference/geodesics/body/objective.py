@@ -1,4 +1,4 @@
-"""What the direction of a geodesic of poses minimises, and its gradient."""
+"""The objective of the direction of a geodesic of poses, and its gradient."""
 
 from typing import NamedTuple
 

@@ -22,7 +22,7 @@ LOWER = 1e-12
 
 
 def furthest(v: Parts) -> float:
-    """Greatest parameter: the fastest joint has turned by half a turn, `π/2` on S³, and would turn back beyond it."""
+    """Largest parameter: the fastest joint has rotated by 180°, `π/2` on S³, and would rotate back beyond it."""
     return float(np.pi / 2 / v.lengths.max(initial=np.finfo(np.float64).tiny))
 
 

@@ -1,6 +1,6 @@
 """Sine, cosine and arc tangent in basic operations of float64: they have the same bits on every machine.
 
-What was compressed is read elsewhere, and its errors were measured when it was written. So the format fixes every rounding: sums,
+A stream is decoded elsewhere, and its errors are measured when it is written. So the format fixes every rounding: sums,
 products, quotients and square roots of IEEE 754 in a fixed order, and Cephes' polynomials (S. Moshier).
 """
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Doubles = NDArray[np.float64]
 
 ROUND = 6_755_399_441_055_744.0
-"""Adding it to a number below 2⁵¹ rounds to an integer, ties to even, which then stands in the low bits."""
+"""Adding this to a number below 2⁵¹ rounds to an integer, ties to even, which is then in the low bits."""
 
 QUARTER_TURN = (1.57079632673412561417, 6.07710050630396597660e-11, 2.02226624879595063154e-21)
 """π/2 in three parts (Cody and Waite)."""
@@ -51,7 +51,7 @@ ARC_DENOMINATOR = (
 )
 
 MORE_BITS = 6.123233995736765886130e-17
-"""What π/2 lacks beyond its last digit."""
+"""Part of π/2 beyond its last digit."""
 
 
 def sin_cos(x: Doubles) -> tuple[Doubles, Doubles]:

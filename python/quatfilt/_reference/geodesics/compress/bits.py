@@ -33,7 +33,7 @@ class Context:
         self.zero += -(self.zero >> pace) if bit else (CERTAIN - self.zero) >> pace
 
     def share(self, span: int) -> int:
-        """Return the part of a range that stands for 0."""
+        """Return the part of a range that represents 0."""
         return (span >> 12) * (self.zero >> 4)
 
 
@@ -92,7 +92,7 @@ class Writer:
 
 @dataclass
 class Reader:
-    """Decodes what a `Writer` coded. Beyond the end come zeros."""
+    """Decoder of a `Writer`'s bytes. Past the end it reads zeros."""
 
     data: bytes
     at: int = 0

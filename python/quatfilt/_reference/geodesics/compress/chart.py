@@ -1,4 +1,4 @@
-"""Principal geodesic coordinates: a rotation as three turns in sequence about the axes of a frame.
+"""Principal geodesic coordinates: a rotation as three successive rotations about the axes of a frame.
 
     q = c · exp(s₁ v₁) · exp(s₂ v₂) · exp(s₃ v₃)
 
@@ -103,5 +103,5 @@ def _unwrapped(angles: Doubles, period: float) -> tuple[Doubles, Doubles]:
 
 
 def _signed(radius: Doubles, turns: Doubles) -> Doubles:
-    """Return radii whose sign changes with every half turn of their angle."""
+    """Return radii whose sign changes with every 180° of their angle."""
     return np.where(turns - 2.0 * np.floor(turns * 0.5) != 0.0, -radius, radius)

@@ -19,7 +19,7 @@ from quatfilt._reference.geodesics.compress.numbers import Numbers
 from quatfilt._reference.rotations.quaternion import is_missing
 
 PLAIN = 7
-"""What a joint is if its samples are stored as they are: 0 … 3 stands for that many coordinates in steps, 4 … 6 for floats."""
+"""Kind of a joint whose samples are stored unchanged. Kinds 0 … 3 are that many coordinates in steps, kinds 4 … 6 floats."""
 
 SURE = 1.0 - 1e-9
 """Part of the tolerance that is used: whoever measures again may round otherwise."""
@@ -48,7 +48,7 @@ STEP_BITS = 20
 
 @dataclass
 class _Joint:
-    """What is written of a joint."""
+    """Encoded contents of a joint."""
 
     kind: int
     missing: Mask
@@ -62,7 +62,7 @@ class _Joint:
 
 
 class _Contexts:
-    """What the coder learns, over all joints."""
+    """Adaptive contexts of the coder, shared by all joints."""
 
     def __init__(self) -> None:
         self.missing = (Context(), Context())
@@ -78,9 +78,9 @@ def compress(q: Reals, frames: Reals, tolerance: Reals, quantised: bool) -> tupl
     q : array (frames, joints, 4)
         Rotations.
     frames : array (joints, 2, 2, 4)
-        What `principal_frames` found: two for each joint, of which the one is taken that needs fewer coordinates.
+        Result of `principal_frames`: two frames for each joint; the one that needs fewer coordinates is used.
     tolerance : array (joints,)
-        Largest rotation angle between a sample and what comes back, radians, above 0.
+        Largest rotation angle between a sample and its decoded value, radians, above 0.
     quantised : bool
         False: coordinates are stored as floats.
 

@@ -19,7 +19,7 @@ SAMPLES = 1024
 """Axes are found from about as many frames, evenly spaced."""
 
 ROUNDS = 40
-"""Times that the two vectors of the second frame are improved in turns."""
+"""Number of alternating improvements of the two vectors of the second frame."""
 
 
 def principal_frames(q: Reals) -> Reals:
@@ -84,7 +84,7 @@ def matrices(q: Doubles) -> Doubles:
 
 
 def _turning_into(first: Doubles, second: Doubles) -> Doubles:
-    """Return the rotation that turns x and y into two orthonormal vectors, with `w ≥ 0`."""
+    """Return the rotation that takes x and y to two orthonormal vectors, with `w ≥ 0`."""
     m = np.column_stack([first, second, np.cross(first, second)])
     # Four times the products of the components; the row with the largest square has all digits.
     outer = np.array(

@@ -1,9 +1,9 @@
-"""Integers as bits: small ones are short, and how short depends on what lies nearby."""
+"""Variable-length code for integers; the code length adapts to the values nearby."""
 
 from quatfilt._reference.geodesics.compress.bits import Context, Reader, Writer
 
 CLASSES = 24
-"""How many sizes of the neighbourhood are told apart."""
+"""Number of size classes of the neighbourhood."""
 
 WIDEST = 48
 """Bits of the largest magnitude."""

@@ -29,7 +29,7 @@ FAR = 1 << 8
 
 
 def differences(numbers: Integers) -> tuple[Integers, list[int], Integers]:
-    """Predict `(n,)` numbers: differences in steps, the kernel of each level, coarse ones first, and what comes back."""
+    """Predict `(n,)` numbers: differences in steps, the kernel of each level, coarse levels first, and the decoded values."""
     n, levels = len(numbers), halvings(len(numbers))
     back, steps, kernels = np.zeros(n, np.int64), np.zeros(n, np.int64), []
     before = 0
@@ -105,7 +105,7 @@ def predictions(back: Integers, level: int, kernel: int) -> Integers:
 
 
 class Usual:
-    """Mean magnitude of a series so far: it forgets what is more than about 16 numbers ago."""
+    """Running mean of the magnitudes, over about the last 16 values."""
 
     def __init__(self) -> None:
         self.sum = 512  # as if all had been 2

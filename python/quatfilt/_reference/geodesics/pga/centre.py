@@ -77,7 +77,7 @@ def is_only_mean(centre: Reals, q: Reals) -> bool:
 
 
 def iterated(start: Reals, q: Reals) -> Reals:
-    """Where the iteration for the mean ends from a start; `(4,)`, `(n, 4)`."""
+    """Return the result of the iteration for the mean from a start; `(4,)`, `(n, 4)`."""
     x = start
     for _ in range(ITERATIONS):
         step = np.mean(log_short(between(np.broadcast_to(x, q.shape), q)), axis=0)

@@ -16,7 +16,7 @@ STEPS = 100
 """Newton steps at most; a handful is enough unless samples lie very near the geodesic, but not on it."""
 
 HALVINGS = 40
-"""Shortenings of a step at most: what is left is below the roundings of a direction."""
+"""Largest number of halvings of a step: after them it is below the rounding error of a direction."""
 
 SHORTEST = 1e-13
 """Radians: a step that ends the descent."""

@@ -41,7 +41,7 @@ def distances(x: Reals, v: Reals) -> Reals:
 
 
 def value(x: Reals, v: Reals, objective: str) -> float:
-    """Mean over the samples of the distance, of its square, or of `1 − cos` of it: what the best direction minimises."""
+    """Mean over the samples of the distance, of its square, or of `1 − cos` of it: the objective of the direction."""
     d = distances(x, v)
     if objective == "squared":
         return float(np.mean(d * d))

@@ -22,7 +22,7 @@ samples of a swing have exactly, for then roundings would decide."""
 def principal_geodesics(
     q: Reals, means: Reals, components: int, most: int, objective: str, tolerance: float
 ) -> tuple[Reals, Reals, Reals]:
-    """Fit geodesics through the mean to each joint, one after the other, each to what the ones before leave.
+    """Fit successive geodesics through the mean to each joint, each to the residuals of the previous ones.
 
     With `x = mean⁻¹ q`, in the half of S³ about 1, the first direction minimises the mean distance to its geodesic. The
     next one is fitted to the residuals `π_v(x)⁻¹ x`, and so on (Said et al. 2007, Algorithm 1). The vector parts of
@@ -35,11 +35,11 @@ def principal_geodesics(
     means : array (joints, 4)
         Unit quaternions.
     components : int
-        How many geodesics; 0 for as many as it takes until each joint's `R_k` is at most `tolerance`.
+        Number of geodesics; 0 for as many as it takes until each joint's `R_k` is at most `tolerance`.
     most : int
         The most geodesics where `components` is 0.
     objective : {"geodesic", "squared", "chordal"}
-        What is minimised: the mean of the distance `d` to the geodesic, of `d²`, or of `1 − cos d`.
+        The objective: the mean of the distance `d` to the geodesic, of `d²`, or of `1 − cos d`.
     tolerance : float, radians of rotation
 
     Returns
@@ -50,7 +50,7 @@ def principal_geodesics(
     residuals : array (k, joints), radians of rotation
         `R_k`, the mean angle that the first k geodesics leave; NaN for a joint without samples.
     descents : array (k, joints, steps)
-        The objective, of distances on S³, on the way to each direction, which never rises; NaN after the last step.
+        The objective, of distances on S³, at the steps of each descent; it never increases. NaN after the last step.
     """
     joints = q.shape[1]
     seen = ~is_missing(q)
@@ -92,7 +92,7 @@ def centred(q: Reals, mean: Reals) -> Reals:
 
 
 def next_geodesic(x: Reals, before: Reals | None, objective: str) -> tuple[Reals, list[float]]:
-    """Direction of the geodesic that is nearest to the samples, and the objectives on the way; `before` is the last one."""
+    """Direction of the geodesic nearest to the samples, and the objectives of the descent; `before` is the previous one."""
     if not np.any(norm(x[:, 1:]) > NOTHING_LEFT):
         v = np.array([1.0, 0.0, 0.0])
         return v, [value(x, v, objective)] if len(x) else []
@@ -118,7 +118,7 @@ def parameters(x: Reals, v: Reals) -> Reals:
 
 
 def residual(x: Reals, v: Reals) -> Reals:
-    """Return what a geodesic leaves: `c_v(s*)⁻¹ x = (f, cos s* u⊥ − sin s* v × u⊥)`, `u⊥` being the part of `u` across `v`."""
+    """Return the residuals of a geodesic: `c_v(s*)⁻¹ x = (f, cos s* u⊥ − sin s* v × u⊥)`, `u⊥` being the part of `u` across `v`."""
     w, u = x[:, :1], x[:, 1:]
     p = (u @ v)[:, None]
     f = np.hypot(w, p)

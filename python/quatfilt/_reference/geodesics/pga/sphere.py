@@ -17,7 +17,7 @@ from quatfilt._reference.geodesics.pga.objective import value
 from quatfilt._reference.rotations.quaternion import log, norm
 
 SUBSET = 512
-"""Samples, at most, on which valleys are sought; what is found there descends over all samples."""
+"""Largest number of samples for the search; its results descend over all samples."""
 
 SQUARES = 4
 """Along the edge of a face, at first."""
@@ -29,7 +29,7 @@ MOST_SQUARES = 4096
 """Squares at once: where more are left, the floor is flat along a line, and any of its points will do."""
 
 ENOUGH = 1e-7
-"""Relative: how much lower than what was found a valley may be and be left out."""
+"""Relative tolerance: a region is pruned unless it can improve the best value by more than this."""
 
 BENT = 1.0
 """Slope that a sample's curvature may add within a square. Beyond, its distance is bounded by its slope alone."""
@@ -130,7 +130,7 @@ def square_middles(faces: Indices, first: Reals, second: Reals) -> Reals:
 
 
 def lower_bounds(x: Reals, directions: Reals, reach: float, objective: str) -> tuple[Reals, Reals]:
-    """Objectives at directions, and what they are at least within `reach` radians of them, `(m,)` each."""
+    """Objectives at directions, and their lower bounds within `reach` radians, `(m,)` each."""
     w, u = x[:, 0], x[:, 1:]
     r = norm(u)
     p = directions @ u.T

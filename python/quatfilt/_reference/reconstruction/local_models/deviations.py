@@ -40,4 +40,4 @@ def predictive(examples: Examples, residuals: Reals) -> Reals:
 
 
 DEVIATIONS = {"leave_one_out": left_out, "predictive": predictive}
-"""What the names of the two stand for."""
+"""The two estimates of the deviations, by name."""

@@ -38,9 +38,9 @@ def predict_pose(
     segments : array (K, m + 1, joints, 4)
         Examples: m poses, the oldest first, and the next one. No sample is missing.
     root_steps : array (K, R)
-        What else is to be predicted of the next pose: steps forward and sideways, height, turn, in their own units.
+        Further outputs of the next pose: steps forward and sideways, height, turn, in their own units.
     signals : array (K, S)
-        What else the examples are compared by and predicted from, in radians or what counts like them: differences from the query, whose
+        Further inputs, in radians or in units that count like radians: differences from the query, whose
         own are 0.
     recent : array (m, joints, 4)
         The last m poses, the oldest first.

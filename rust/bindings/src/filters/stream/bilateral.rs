@@ -4,7 +4,7 @@ use super::PoseStream;
 use crate::filters::bilateral::filter;
 use pyo3::prelude::*;
 
-/// A stream of poses with a joint for each scale of angles; the arguments are those of `bilateral` after the arrays.
+/// A stream of poses with one joint per angle scale; the arguments are those of `bilateral` after the arrays.
 #[pyfunction]
 #[pyo3(signature = (radius, sigma_time, sigma_angle, kernel, iterations, boundary, lookahead, /))]
 pub(crate) fn bilateral_stream(

@@ -4,7 +4,7 @@ use super::PoseStream;
 use crate::filters::kalman::parameters;
 use pyo3::prelude::*;
 
-/// A stream of poses with a joint for each noise; the arguments are those of `kalman` after the arrays.
+/// A stream of poses with one joint per noise; the arguments are those of `kalman` after the arrays.
 #[pyfunction]
 #[pyo3(signature = (process_noise, measurement_noise, lookahead, /))]
 pub(crate) fn kalman_stream(

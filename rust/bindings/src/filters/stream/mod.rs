@@ -1,7 +1,7 @@
-//! Streams: the one class of the bindings, for a stream has state. Functions make it, one for each filter.
+//! Streams: the class of all streams, created by one function per filter.
 //!
-//! A push takes some ten microseconds. It does not detach: to let go of the interpreter and to wait for it again may take
-//! longer than that, and would let another thread push in between.
+//! A push takes some ten microseconds. It does not detach: releasing and reacquiring the interpreter may take longer
+//! than that, and another thread could push in between.
 
 pub(crate) mod bilateral;
 pub(crate) mod kalman;
@@ -17,7 +17,7 @@ use quatfilt_core::filters::stream::PoseStream as Stream;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
-/// A filter that takes poses one by one.
+/// A filter that processes poses one by one.
 #[pyclass(frozen, module = "quatfilt._core")]
 pub(crate) struct PoseStream(Mutex<Stream>);
 
@@ -26,7 +26,7 @@ impl PoseStream {
         Ok(Self(Mutex::new(stream.map_err(to_python)?)))
     }
 
-    /// The stream, unless it is at work: a signal handler that runs during [`PoseStream::flush`] may come here again.
+    /// The stream, unless it is in use: a signal handler during [`PoseStream::flush`] may call it again.
     fn lock(&self) -> PyResult<MutexGuard<'_, Stream>> {
         match self.0.try_lock() {
             Ok(stream) => Ok(stream),
@@ -40,13 +40,13 @@ impl PoseStream {
 
 #[pymethods]
 impl PoseStream {
-    /// How many frames later a pose comes out.
+    /// Number of frames between a pose and its result.
     #[getter]
     fn latency(&self) -> PyResult<usize> {
         Ok(self.lock()?.latency())
     }
 
-    /// Takes a pose `(joints, 4)` and confidences `(joints,)`; returns the pose of `latency` frames ago.
+    /// Processes a pose `(joints, 4)` with confidences `(joints,)`; returns the pose of `latency` frames ago.
     #[pyo3(signature = (pose, confidence, /))]
     fn push(
         &self,
@@ -68,7 +68,7 @@ impl PoseStream {
         Ok(Some(out.into_any().unbind()))
     }
 
-    /// Ends the clip; returns the poses that are still to come, `(n, joints, 4)`.
+    /// Ends the clip; returns the pending poses, `(n, joints, 4)`.
     #[pyo3(signature = (/))]
     fn flush(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
         let mut stream = self.lock()?;

@@ -4,7 +4,7 @@ use super::PoseStream;
 use crate::filters::nonlocal_pose_means::filter;
 use pyo3::prelude::*;
 
-/// A stream of poses with a joint for each bandwidth; the arguments are those of `nonlocal_pose_means` after the arrays.
+/// A stream of poses with one joint per bandwidth; the arguments are those of `nonlocal_pose_means` after the arrays.
 #[pyfunction]
 #[pyo3(signature = (bandwidth, search_radius, patch_radius, distance, weights, neighbors, chart, boundary, lookahead, /))]
 #[allow(clippy::too_many_arguments, reason = "the filter's positional arguments")]

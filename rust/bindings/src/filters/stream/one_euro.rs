@@ -4,7 +4,7 @@ use super::PoseStream;
 use crate::filters::one_euro::parameters;
 use pyo3::prelude::*;
 
-/// A stream of poses with a joint for each cutoff; the arguments are those of `one_euro` after the arrays.
+/// A stream of poses with one joint per cutoff; the arguments are those of `one_euro` after the arrays.
 #[pyfunction]
 #[pyo3(signature = (min_cutoff, beta, derivative_cutoff, /))]
 pub(crate) fn one_euro_stream(

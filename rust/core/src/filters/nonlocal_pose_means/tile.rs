@@ -165,7 +165,7 @@ impl<'a, T: Real> Tile<'a, T> {
             means.begin(group.clone());
             match self.clip.filter.neighbors {
                 None => {
-                    self.add_all(&mut PatchDistances::new(&self, group), &mut means, buffers, interrupt)?
+                    self.add_all(&mut PatchDistances::new(&self, group), &mut means, buffers, interrupt)?;
                 }
                 Some(count) => {
                     let scratch = &mut buffers.scratch;

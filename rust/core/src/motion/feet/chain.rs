@@ -1,4 +1,4 @@
-//! A leg as three bones, in one frame.
+//! A leg as a chain of three bones, with its fixed transforms.
 
 use super::{Point, add};
 use crate::rotations::quaternion::{product, rotate};
@@ -9,11 +9,11 @@ pub(super) struct Joints {
     pub(super) hip: usize,
     pub(super) knee: usize,
     pub(super) ankle: usize,
-    /// The ankle where there is none.
+    /// The ankle if the leg has no toe.
     pub(super) toe: usize,
 }
 
-/// A pose to be read: rotations relative to the parents, and positions in them.
+/// One pose: rotations relative to the parents, and positions in the parents' frames.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pose<'a, T> {
     pub(super) parents: &'a [Option<usize>],
@@ -30,7 +30,8 @@ impl<T: crate::Real> Pose<'_, T> {
         std::array::from_fn(|c| self.local[joint * 3 + c].to_f64())
     }
 
-    /// The rotation from a joint's frame to that of the parent of one below it, and the position of the latter in the former.
+    /// The rotation from the frame of `above` to that of the parent of `below`, and the position of `below` in the
+    /// frame of `above`.
     pub(super) fn between(&self, above: usize, below: usize) -> ([f64; 4], Point) {
         let (mut rotation, mut position) = ([1.0, 0.0, 0.0, 0.0], self.position(below));
         let mut joint = self.parents[below];
@@ -47,24 +48,25 @@ impl<T: crate::Real> Pose<'_, T> {
 /// A leg of a pose.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Chain {
-    /// Rotation from the pelvis' frame to that of the hip's parent, and below alike.
+    /// Rotation from the pelvis frame to that of the hip's parent; the next ones accordingly.
     to_hip: [f64; 4],
     to_knee: [f64; 4],
     pub(super) to_ankle: [f64; 4],
-    /// Position of the hip in the pelvis' frame, of the knee in the hip's, of the ankle in the knee's, of the toe in the ankle's.
+    /// Positions of the hip in the pelvis frame, the knee in the hip's, the ankle in the knee's, and the toe in the
+    /// ankle's frame.
     hip_at: Point,
     knee_at: Point,
     ankle_at: Point,
     pub(super) toe_at: Point,
-    /// Rotation of the joint in its parent.
+    /// Rotations of the joints relative to their parents.
     pub(super) hip: [f64; 4],
     pub(super) knee: [f64; 4],
     pub(super) ankle: [f64; 4],
-    /// Axis of the knee in the shank's frame.
+    /// Axis of the knee in the shank frame.
     pub(super) hinge: Point,
 }
 
-/// Where a leg is in the world.
+/// Positions and orientations of a leg in the world.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Places {
     pub(super) hip: Point,
@@ -92,7 +94,7 @@ impl Chain {
         rotations.as_flattened().iter().chain(positions.as_flattened()).all(|x| x.is_finite())
     }
 
-    /// Where the leg is, from orientation and position of the pelvis.
+    /// Positions and orientations of the leg, given orientation and position of the pelvis.
     pub(super) fn places(&self, turned: [f64; 4], shifted: Point) -> Places {
         let hip = add(shifted, rotate(turned, self.hip_at));
         let thigh = product(product(turned, self.to_hip), self.hip);

@@ -1,43 +1,43 @@
-//! When a foot joint stands on the ground: a slow and low path, with hysteresis.
+//! Ground contact of foot joints: low speed and height, with hysteresis.
 
 use super::paths::low_passed;
 use super::{Point, runs, speeds};
 use crate::parallel::Interrupt;
 use crate::{Error, Real};
 
-/// Seconds and centimetres: with the noise `ν` the path is low-passed with the deviation `0.05 ν / (ν + 0.3)` s, or noise looks like
-/// speed.
+/// Seconds and centimetres: for the noise `ν` the path is low-passed with the standard deviation `0.05 ν / (ν + 0.3)`
+/// s. Without it noise would count as speed.
 const LOW_PASS: f64 = 0.05;
 const LOW_PASS_NOISE: f64 = 0.3;
 
-/// Centimetres: noise that counts in the thresholds, at most.
+/// Largest noise used in the thresholds, centimetres.
 const MOST_NOISE: f64 = 2.5;
 
-/// Centimetres per second, and per second and centimetre of noise: a contact begins below this speed.
+/// Speed below which a contact begins: centimetres per second, and per second and centimetre of noise.
 const ENTER_SPEED: f64 = 15.0;
 const ENTER_SPEED_NOISE: f64 = 5.0;
 
-/// Centimetres: a contact begins below this height, plus the noise.
+/// Height below which a contact begins, centimetres; the noise is added.
 const ENTER_HEIGHT: f64 = 5.0;
 
-/// As above: a contact goes on below this speed and this height.
+/// Speed and height below which a contact continues.
 const STAY_SPEED: f64 = 20.0;
 const STAY_SPEED_NOISE: f64 = 6.0;
 const STAY_HEIGHT: f64 = 6.0;
 
-/// Percentile of the heights that stands for the ground, as a share: a single low frame is none.
+/// Fraction of the heights below the ground level, so that a single low frame does not define it.
 const GROUND: f64 = 0.005;
 
-/// Seconds and frames: a shorter contact is none. Noise makes short ones by chance: seconds count in proportion to it, in full from
-/// `CHANCE` centimetres of noise on.
+/// Shortest contact, in seconds and in frames. Noise causes short contacts by chance: the seconds apply in proportion
+/// to the noise, fully from `CHANCE` centimetres on.
 const SHORTEST: f64 = 0.1;
 const CHANCE: f64 = 0.3;
 pub(super) const FEWEST: usize = 3;
 
-/// Seconds: contacts that are no farther apart are one.
+/// Longest gap, in seconds, across which two contacts are merged.
 const LONGEST_GAP: f64 = 0.05;
 
-/// Tells when a path in centimetres stands on the ground; frames that are not known are no contact.
+/// Finds the frames in which a path in centimetres is on the ground; unknown frames are not contacts.
 pub(super) fn find(
     y: &[Point],
     known: &[bool],
@@ -83,7 +83,7 @@ pub(super) fn find(
     Ok(result)
 }
 
-/// The height below which a share [`GROUND`] of the heights lies, interpolated; heights are numbers, and at least one.
+/// The quantile [`GROUND`] of the heights, interpolated; there is at least one height, and none is NaN.
 fn percentile(mut heights: Vec<f64>) -> f64 {
     let place = GROUND * (heights.len() - 1) as f64;
     let below = place.to_count().min(heights.len() - 1);

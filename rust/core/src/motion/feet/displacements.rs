@@ -1,4 +1,4 @@
-//! By how much feet are to be moved: their paths, contacts and targets, blended over time.
+//! Displacements of feet: from paths, contacts and targets, blended over time.
 
 use super::paths::{complete, estimate};
 use super::{Point, add, contacts, is_known, norm, runs, scaled, subtract, targets};
@@ -7,16 +7,16 @@ use crate::filters::smooth::PathSmoother;
 use crate::parallel::{self, Interrupt};
 use crate::{Error, Real};
 
-/// Centimetres: thresholds hold for a leg of this length; lengths are multiplied by 90 / leg length.
+/// Leg length for which the thresholds hold, centimetres: lengths are multiplied by 90 / leg length.
 const LEG: f64 = 90.0;
 
-/// Centimetres: a foot is moved by no more.
+/// Largest displacement of a foot, centimetres.
 const FARTHEST: f64 = 3.0;
 
-/// Seconds: before and after a contact its displacement fades out.
+/// Fade time of a displacement before and after its contact, seconds.
 const FADE: f64 = 0.1;
 
-/// Seconds: between contacts no farther apart the displacement is interpolated.
+/// Longest gap between contacts, in seconds, across which displacements are interpolated.
 const BRIDGE: f64 = 0.2;
 
 /// Joints of a foot: ankle and toe.
@@ -28,7 +28,8 @@ const NANOSECONDS: usize = 3000;
 /// Feet before and after a filter.
 #[derive(Debug, Clone, Copy)]
 pub struct FootPaths<'a, T> {
-    /// Paths of ankle and toe of each leg in the input, `(frames, legs, 2, 3)`. A leg without a toe has its ankle twice.
+    /// Paths of ankle and toe of each leg in the input, `(frames, legs, 2, 3)`. A leg without a toe repeats its
+    /// ankle.
     pub before: &'a [T],
     /// The same in the filtered motion.
     pub after: &'a [T],
@@ -40,13 +41,13 @@ pub struct FootPaths<'a, T> {
     pub down: bool,
     /// Frames per second.
     pub fps: f64,
-    /// Contacts that are known, `(frames, legs, 2)`.
+    /// Given contacts, `(frames, legs, 2)`.
     pub contacts: Option<&'a [bool]>,
-    /// Whether feet stay at one point, or follow their path in the input.
+    /// Whether feet are locked to one point; otherwise they follow their path in the input.
     pub lock: bool,
 }
 
-/// What [`foot_displacements`] writes.
+/// Output of [`foot_displacements`].
 #[derive(Debug)]
 pub struct Displacements<'a> {
     /// `(frames, legs, 2, 3)`, in the unit of the paths.
@@ -76,10 +77,11 @@ struct Moved {
     contacts: Vec<bool>,
 }
 
-/// Finds when feet stand on the ground, and by how much they are to be moved.
+/// Finds ground contacts, and the displacements of the feet.
 ///
 /// # Errors
-/// [`Error::Length`] if slices do not fit together; [`Error::Parameter`] if there is no such axis; [`Error::Interrupted`].
+/// [`Error::Length`] if the lengths of slices do not agree; [`Error::Parameter`] if `up` is not an axis;
+/// [`Error::Interrupted`].
 pub fn foot_displacements<T: Real>(
     paths: FootPaths<'_, T>,
     out: Displacements<'_>,
@@ -123,7 +125,8 @@ pub fn foot_displacements<T: Real>(
     Ok(())
 }
 
-/// Displacements of ankle and toe in one frame: each is its own where it stands, and the other's where that stands alone.
+/// Displacements of ankle and toe in one frame: each has its own if it is in contact, or that of the other if only
+/// that one is.
 fn both(ankle: &Moved, toe: &Moved, t: usize, lock: bool) -> [Point; 2] {
     let (w_a, w_t) = (ankle.weights[t], toe.weights[t]);
     let (d_a, d_t) = (scaled(ankle.displacements[t], w_a), scaled(toe.displacements[t], w_t));
@@ -132,7 +135,7 @@ fn both(ankle: &Moved, toe: &Moved, t: usize, lock: bool) -> [Point; 2] {
     if lock {
         return [a, b];
     }
-    // The foot is turned by half as much as its two ends ask for.
+    // The foot is rotated by half of the rotation that its two ends would require.
     let quarter = |near: Point, far: Point| std::array::from_fn(|c| (3.0 * near[c] + far[c]) / 4.0);
     [quarter(a, b), quarter(b, a)]
 }
@@ -195,8 +198,8 @@ fn one_joint<T: Real>(
     Ok(Moved { displacements, weights, contacts: held })
 }
 
-/// Continues displacements beyond their contacts, with weights that fade out; between contacts that are close to each other they are
-/// interpolated.
+/// Extrapolates displacements past their contacts, with weights that fade out; between contacts close to each other
+/// they are interpolated.
 fn blended(away: &[Point], held: &[bool], fps: f64) -> (Vec<Point>, Vec<f64>) {
     let frames = held.len();
     let mut moved = away.to_vec();

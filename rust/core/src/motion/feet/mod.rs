@@ -1,9 +1,9 @@
-//! Feet on the ground: where they belong, and the legs that bring them there.
+//! Feet on the ground: their targets, and inverse kinematics of the legs.
 //!
 //! - `paths`: the best estimate of a foot's path;
-//! - `contacts`: when it stands on the ground;
-//! - `targets`: where it belongs while it does;
-//! - `displacements`: by how much it is to be moved, over time;
+//! - `contacts`: its ground contacts;
+//! - `targets`: its target position during a contact;
+//! - `displacements`: its displacements over time;
 //! - `chain`, `place`: damped least squares on pelvis, hips and knees.
 
 mod chain;

@@ -9,10 +9,10 @@ use crate::noise::noise::noise_level_of_positions;
 use crate::parallel::Interrupt;
 use crate::window::Boundary;
 
-/// Frames: a mask of a smaller deviation is one frame wide.
+/// Standard deviation in frames below which a mask is one frame wide.
 const SHORTEST_SIGMA: f64 = 0.05;
 
-/// Fills the unknown frames of a path along straight lines; the ends are held.
+/// Interpolates the unknown frames of a path linearly; the ends are constant.
 pub(super) fn complete(path: &mut [Point]) {
     let known: Vec<usize> = (0..path.len()).filter(|&t| is_known(path[t])).collect();
     let (Some(&first), Some(&last)) = (known.first(), known.last()) else { return };
@@ -29,10 +29,11 @@ pub(super) fn complete(path: &mut [Point]) {
     }
 }
 
-/// Estimates a path from the input's path `x` and its filtered version `f`, without unknown frames; returns the noise `ν` of `x`.
+/// Estimates a path from the input's path `x` and its filtered version `f`, both without unknown frames; returns the
+/// noise `ν` of `x`.
 ///
-/// `y = f + g (smooth(x) − f)` with `g = 1 − ν²/r²`, at least 0, and `r²` the mean square of `x − f` per coordinate: a filter that
-/// removes more than noise has removed motion.
+/// `y = f + g (smooth(x) − f)` with `g = 1 − ν²/r²`, at least 0, and `r²` the mean square of `x − f` per coordinate.
+/// If a filter removes more than the noise, it has removed motion.
 pub(super) fn estimate(
     x: &[Point],
     f: &[Point],
@@ -57,7 +58,7 @@ pub(super) fn estimate(
     Ok((y, noise))
 }
 
-/// Low-passes a path under a Gaussian mask of a deviation in frames; its ends are held.
+/// Low-passes a path with a Gaussian mask of the standard deviation `sigma` in frames; its ends are repeated.
 pub(super) fn low_passed(path: &[Point], sigma: f64, interrupt: &Interrupt) -> Result<Vec<Point>, Error> {
     let frames = path.len();
     if sigma < SHORTEST_SIGMA || frames < 2 {

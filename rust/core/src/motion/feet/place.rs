@@ -1,4 +1,4 @@
-//! Legs that bring feet where they belong: damped least squares on the pelvis, the hips and the knees of each frame.
+//! Inverse kinematics of the legs: damped least squares on the pelvis, the hips and the knees of each frame.
 //!
 //! S. R. Buss, *Introduction to Inverse Kinematics with Jacobian Transpose, Pseudoinverse and Damped Least Squares Methods*, 2004.
 
@@ -10,31 +10,31 @@ use crate::parallel::{self, Interrupt};
 use crate::rotations::quaternion::{between, conjugate_one, exp_one, log_short, product, rotate, unit};
 use crate::{ClipView, Error, Real};
 
-/// How often the linear equations are set up and solved.
+/// Number of times that the linear equations are set up and solved.
 const STEPS: usize = 3;
 
-/// `λ`, lengths over leg length: with the pelvis, and with the legs alone.
+/// Damping `λ`, in leg lengths: with the pelvis, and with the legs only.
 const DAMPING: f64 = 0.2;
 const DAMPING_OF_LEGS: f64 = 0.3;
 
-/// How readily these move, with 1 for the hips.
+/// Column scales of the parameters; the hips have 1.
 const ROOT_TRANSLATION: f64 = 0.3;
 const ROOT_ROTATION: f64 = 0.5;
 const KNEE: f64 = 0.5;
 
-/// Part of the change of an ankle that is applied when feet are kept, not locked.
+/// Fraction of an ankle's rotation that is applied if feet follow their path.
 const ANKLE: f64 = 0.5;
 
-/// Radians: an ankle is turned by no more where feet are kept, not locked.
+/// Largest rotation of an ankle, radians, if feet follow their path.
 const MOST_ANKLE: f64 = 3.0 * std::f64::consts::PI / 180.0;
 
-/// Sum of squares of a knee's rotation steps, in rad², below which it has no axis to bend about.
+/// Sum of squares of a knee's rotation increments, in rad², below which it has no axis.
 const LEAST_HINGE: f64 = 1e-12;
 
-/// Legs at most: each adds three equations.
+/// Largest number of legs: each adds three equations.
 const MOST_LEGS: usize = 2;
 
-/// Equations at most.
+/// Largest number of equations.
 const ROWS: usize = 3 * MOST_LEGS;
 
 /// Frames per task.
@@ -43,10 +43,10 @@ const TILE: usize = 128;
 /// Estimated nanoseconds per frame.
 const NANOSECONDS: usize = 3000;
 
-/// Equal to nothing, of the product of two lengths: opposite directions.
+/// Product of two lengths below which directions count as opposite.
 const OPPOSITE: f64 = 1e-9;
 
-/// A body whose feet are to be placed.
+/// A body whose feet are moved.
 #[derive(Debug, Clone, Copy)]
 pub struct Body<'a, T> {
     /// Rotations relative to the parents.
@@ -57,21 +57,21 @@ pub struct Body<'a, T> {
     pub local: &'a [T],
     /// The parent of each joint, `None` for a root.
     pub parents: &'a [Option<usize>],
-    /// The joint that all legs hang on; joint 0 or below it.
+    /// The joint above all legs; joint 0 or below it.
     pub pelvis: usize,
-    /// Hip, knee, ankle and toe of each leg; the toe is the ankle where there is none.
+    /// Hip, knee, ankle and toe of each leg; the toe is the ankle if there is none.
     pub legs: &'a [[usize; 4]],
     /// Lengths of the legs.
     pub lengths: &'a [f64],
     /// Displacements of ankle and toe, `(frames, legs, 2, 3)`.
     pub displacements: &'a [f64],
-    /// Whether the body and the pelvis may move, or the legs alone.
+    /// Whether the body and the pelvis may move; otherwise only the legs do.
     pub root: bool,
-    /// Whether ankles are turned by all that is asked for.
+    /// Whether ankles are rotated fully.
     pub lock: bool,
 }
 
-/// What [`place_feet`] writes.
+/// Output of [`place_feet`].
 #[derive(Debug)]
 pub struct Placed<'a, T> {
     /// `(frames, joints, 4)`.
@@ -150,13 +150,14 @@ impl<T: Real> Body<'_, T> {
 
 /// Moves feet by rotations of hips, knees and ankles, and by the pelvis.
 ///
-/// With the displacements `d` of the ankles that are still missing, in leg lengths, each of three steps solves
-/// `θ = C Jᵀ (J Jᵀ + λ² I)⁻¹ d`, `J` the derivative of the ankles by the parameters times the column scales `C`. All ankles are in each
-/// frame's equations, those that are not to move with `d = 0`. Then each ankle is turned by a part of the change that brings the line from
-/// ankle to toe where it belongs. A frame without displacements stays as it is.
+/// Let `d` be the remaining displacements of the ankles in leg lengths. Each of three steps solves `θ = C Jᵀ (J Jᵀ +
+/// λ² I)⁻¹ d`, with `J` the derivative of the ankles with respect to the parameters times the column scales `C`. The
+/// equations contain all ankles; those that do not move have `d = 0`. Then each ankle is rotated by a fraction of the
+/// rotation that takes the line from ankle to toe to its target. A frame without displacements is unchanged.
 ///
 /// # Errors
-/// [`Error::Length`] if slices do not fit together; [`Error::Parameter`] if the legs are none; [`Error::Interrupted`].
+/// [`Error::Length`] if the lengths of slices do not agree; [`Error::Parameter`] if the legs are invalid;
+/// [`Error::Interrupted`].
 pub fn place_feet<T: Real>(
     body: Body<'_, T>,
     out: Placed<'_, T>,
@@ -239,7 +240,7 @@ fn write<T: Real>(q: [f64; 4], out: &mut [T]) {
     }
 }
 
-/// A leg that takes part.
+/// A leg in the equations.
 #[derive(Debug, Clone, Copy)]
 struct Leg {
     old: Chain,
@@ -248,18 +249,18 @@ struct Leg {
     wanted: [Point; 2],
 }
 
-/// One step's derivatives of an ankle, lengths over leg length.
+/// Derivatives of an ankle in one step, lengths in leg lengths.
 #[derive(Debug, Clone, Copy, Default)]
 struct Row {
     known: bool,
     from_root: Point,
     from_hip: Point,
-    /// By the angle of the knee.
+    /// With respect to the angle of the knee.
     from_knee: Point,
     error: Point,
 }
 
-/// Solves for the pelvis, the hips and the knees; orientation and position of the pelvis are returned.
+/// Solves for the pelvis, the hips and the knees; returns orientation and position of the pelvis.
 fn solve(
     legs: &mut [Option<Leg>; MOST_LEGS],
     length: f64,
@@ -368,8 +369,8 @@ fn cholesky(matrix: &mut [[f64; ROWS]; ROWS], right: &mut [f64; ROWS]) {
     }
 }
 
-/// The rotation of an ankle in the shank that turns the foot to its goal, or, where feet are kept, by half as much and no more
-/// than [`MOST_ANKLE`].
+/// The ankle's rotation in the shank that takes the foot to its goal. If feet follow their path: half of that
+/// rotation, and at most [`MOST_ANKLE`].
 fn turned_ankle(leg: &Leg, before: [f64; 4], turned: [f64; 4], lock: bool) -> [f64; 4] {
     let origin = [0.0; 3];
     let old = product(leg.old.places(before, origin).shank, leg.old.to_ankle);
@@ -388,7 +389,7 @@ fn turned_ankle(leg: &Leg, before: [f64; 4], turned: [f64; 4], lock: bool) -> [f
     unit(product(leg.old.ankle, exp_one(scaled(change, part))))
 }
 
-/// The least rotation from one direction to another; none where a vector has no length.
+/// The smallest rotation from one direction to another; the identity if a vector has length 0.
 fn least_rotation(u: Point, v: Point) -> [f64; 4] {
     let lengths = norm(u) * norm(v);
     let axis = cross(u, v);
@@ -397,7 +398,7 @@ fn least_rotation(u: Point, v: Point) -> [f64; 4] {
     if lengths == 0.0 || size <= OPPOSITE * lengths { [1.0, 0.0, 0.0, 0.0] } else { unit(q) }
 }
 
-/// The axis about which a knee moves: the main axis of its rotation steps in the frame of the shank; zeros without one.
+/// The axis of a knee: the main axis of its rotation increments in the shank frame; zeros if it does not move.
 fn hinge<T: Real>(clip: ClipView<'_, T>, knee: usize, interrupt: &Interrupt) -> Result<Point, Error> {
     let mut squares = [0.0; 9];
     let mut last = [f64::NAN; 4];

@@ -1,4 +1,4 @@
-//! Where a foot belongs while it stands.
+//! Target positions of a foot during a contact.
 
 use super::contacts::FEWEST;
 use super::paths::low_passed;
@@ -7,27 +7,29 @@ use crate::parallel::Interrupt;
 use crate::{Error, Real};
 use std::ops::Range;
 
-/// Seconds: deviations of the low-passes that are tried, the longest first; then the path itself is the target.
+/// Standard deviations, in seconds, of the low-passes that are tried, the longest first; the last resort is the path
+/// itself.
 const SIGMAS: [f64; 11] = [0.4, 0.28, 0.2, 0.14, 0.1, 0.07, 0.05, 0.035, 0.025, 0.0175, 0.0125];
 
-/// Seconds and frames: a deviation is tried if it is not above one of these. Few frames per second need more time against noise.
+/// Limits of the standard deviation in seconds and in frames: one of them must hold. Low frame rates need longer
+/// averages.
 const ALWAYS: f64 = 0.1;
 const MOST_FRAMES: f64 = 12.5;
 
-/// Of the noise: root mean square per coordinate by which a low-pass may move the path within a contact.
+/// Largest root-mean-square change per coordinate by a low-pass within a contact, in units of the noise.
 const FIT: f64 = 0.35;
 
-/// Centimetres, and per centimetre of noise: a foot that is locked and moves farther within a contact takes a step.
+/// Range within a contact above which a locked foot makes a step: centimetres, and per centimetre of noise.
 const RANGE: f64 = 3.0;
 const RANGE_NOISE: f64 = 0.5;
 
-/// Seconds: gap that such a step leaves.
+/// Length of the gap at such a step, seconds.
 const STEP: f64 = 0.04;
 
-/// Seconds: a foot is locked for no less.
+/// Shortest time for which a foot is locked, seconds.
 const SHORTEST_HOLD: f64 = 0.1;
 
-/// The smoothest version of a path within a contact that is still the path: it leaves it by a part of the noise.
+/// The smoothest version of a path within a contact that differs from it by no more than a fraction of the noise.
 pub(super) fn smoothed(
     y: &[Point],
     noise: f64,
@@ -46,7 +48,7 @@ pub(super) fn smoothed(
     Ok(y.to_vec())
 }
 
-/// Locks a contact: horizontally the target is the median of the path, in pieces if the foot moves too far.
+/// Locks a contact: the horizontal target is the median of the path, in several pieces if the foot moves too far.
 pub(super) fn hold(
     y: &[Point],
     target: &mut [Point],
@@ -92,7 +94,7 @@ pub(super) fn hold(
     }
 }
 
-/// The median of numbers, of which there is at least one.
+/// The median of at least one value.
 fn median(mut values: Vec<f64>) -> f64 {
     let middle = values.len() / 2;
     let even = values.len().is_multiple_of(2);

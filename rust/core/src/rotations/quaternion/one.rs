@@ -30,8 +30,7 @@ pub fn conjugate_one<T: Real>(q: [T; 4]) -> [T; 4] {
 
 /// `a⁻¹·b` of unit quaternions.
 ///
-/// Terms that cancel between equal ones stand side by side: their way is 0 to the last bit, however small the unit it is
-/// measured in.
+/// Terms that cancel for equal quaternions are adjacent, so the vector part of the result is exactly 0 for them.
 #[inline(always)]
 #[must_use]
 pub fn between<T: Real>(a: [T; 4], b: [T; 4]) -> [T; 4] {
@@ -50,7 +49,7 @@ pub fn dot<T: Real>(a: [T; 4], b: [T; 4]) -> T {
     (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3])
 }
 
-/// The same direction with length 1.
+/// The normalised quaternion.
 #[inline(always)]
 #[must_use]
 pub fn unit<T: Real>(q: [T; 4]) -> [T; 4] {
@@ -65,7 +64,7 @@ pub fn unit<T: Real>(q: [T; 4]) -> [T; 4] {
 #[must_use]
 pub fn log_one<T: Real>(q: [T; 4]) -> [T; 3] {
     let square = q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
-    // Not a sum: near −1 the result is `π·v/|v|`, which shows every digit of the length. NaN stays.
+    // Not a sum: near −1 the result is `π·v/|v|`, which depends on every digit of the length. NaN propagates.
     let sine = (if square < T::TINY_SQUARE { T::TINY_SQUARE } else { square }).sqrt();
     let factor = sine.atan2_nonnegative(q[0]) / sine;
     let opposite = (square < T::TINY_SQUARE) & (q[0] <= T::ZERO);
@@ -76,7 +75,7 @@ pub fn log_one<T: Real>(q: [T; 4]) -> [T; 3] {
     ]
 }
 
-/// Quaternion logarithm of `q` or `−q`, whichever has `w ≥ 0`: half the rotation vector of the shorter way.
+/// Quaternion logarithm of `q` or `−q`, whichever has `w ≥ 0`: half the rotation vector of the shorter rotation.
 #[inline(always)]
 #[must_use]
 pub fn log_short<T: Real>(q: [T; 4]) -> [T; 3] {
@@ -99,7 +98,7 @@ pub fn exp_one<T: Real>(v: [T; 3]) -> [T; 4] {
 
 /// Rotation angle between two rotations, in `[0, π]` radians.
 ///
-/// The lengths do not matter. Accurate to a few ulp for small and for large angles, which `acos` is not.
+/// The result does not depend on the lengths. Accurate to a few ulp for small and for large angles, unlike `acos`.
 #[inline(always)]
 #[must_use]
 pub fn angle_between<T: Real>(a: [T; 4], b: [T; 4]) -> T {
@@ -108,7 +107,7 @@ pub fn angle_between<T: Real>(a: [T; 4], b: [T; 4]) -> T {
     T::TWO * sine.atan2_nonnegative(d[0].abs())
 }
 
-/// The rotation at `part` (0 … 1) of the shorter way from `a` to `b`.
+/// The rotation at the fraction `part` (0 … 1) of the shorter geodesic from `a` to `b`.
 #[inline(always)]
 #[must_use]
 pub fn geodesic<T: Real>(a: [T; 4], b: [T; 4], part: T) -> [T; 4] {
@@ -136,7 +135,7 @@ pub fn negative<T: Real>(q: [T; 4]) -> [T; 4] {
     [-q[0], -q[1], -q[2], -q[3]]
 }
 
-/// Whether the first component that is not zero is negative: the half of S³ that does not hold the identity.
+/// Whether the first non-zero component is negative: the half of S³ that does not contain the identity.
 #[must_use]
 pub fn lower<T: Real>(q: [T; 4]) -> bool {
     q.into_iter().find(|&x| x != T::ZERO).is_some_and(|x| x < T::ZERO)

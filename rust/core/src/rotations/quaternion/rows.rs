@@ -5,7 +5,7 @@ use crate::error::check_length;
 use crate::simd::multiversion;
 use crate::{Error, Real, parallel};
 
-/// Quaternions per chunk: four planes of float64 in and out stay in the first-level cache.
+/// Quaternions per chunk: four planes of float64 in and out fit in the first-level cache.
 const CHUNK: usize = 64;
 
 /// Quaternions per task.
@@ -97,7 +97,7 @@ multiversion! {
     }
 }
 
-/// Cuts arrays of `n` rows into tasks and runs `work` on each.
+/// Splits arrays of `n` rows into tasks and runs `work` on each.
 pub(in crate::rotations) fn rows<T: Real>(
     n: usize,
     nanoseconds: usize,
@@ -150,7 +150,7 @@ pub fn normalize<T: Real>(q: &[T], out: &mut [T]) -> Result<(), Error> {
 /// Rotation angles between `n` pairs of rotations, in `[0, π]` radians: `(n, 4)`, `(n, 4)` → `(n)`.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit.
+/// [`Error::Length`] if the lengths of slices do not agree.
 pub fn geodesic_distance<T: Real>(a: &[T], b: &[T], out: &mut [T]) -> Result<(), Error> {
     check_length("b", a.len(), b.len())?;
     check_length("out", a.len() / 4, out.len())?;
@@ -162,7 +162,7 @@ pub fn geodesic_distance<T: Real>(a: &[T], b: &[T], out: &mut [T]) -> Result<(),
 /// Quaternion logarithms, half the rotation vectors: `(n, 4)` → `(n, 3)`.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit.
+/// [`Error::Length`] if the lengths of slices do not agree.
 pub fn log<T: Real>(q: &[T], out: &mut [T]) -> Result<(), Error> {
     check_length("out", q.len() / 4 * 3, out.len())?;
     rows(q.len() / 4, 4, out, 3, |r, out| log_rows(&q[r.start * 4..r.end * 4], out))
@@ -171,7 +171,7 @@ pub fn log<T: Real>(q: &[T], out: &mut [T]) -> Result<(), Error> {
 /// Quaternion exponentials of half rotation vectors: `(n, 3)` → `(n, 4)`.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit.
+/// [`Error::Length`] if the lengths of slices do not agree.
 pub fn exp<T: Real>(v: &[T], out: &mut [T]) -> Result<(), Error> {
     check_length("out", v.len() / 3 * 4, out.len())?;
     rows(v.len() / 3, 4, out, 4, |r, out| {

@@ -1,30 +1,30 @@
-//! What is wrong with a clip: missing samples, and the one that is farthest from unit length.
+//! Checks of a clip: missing samples, and the largest deviation from unit length.
 
 use super::one::{dot, is_missing, of_row};
 use crate::simd::multiversion;
 use crate::{ClipView, Error, Real, parallel};
 
-/// What [`scan`] found.
+/// Result of [`scan`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scan {
-    /// How many samples are missing.
+    /// Number of missing samples.
     pub missing: usize,
     /// The largest `||q| − 1|` over the others, 0 if there are none.
     pub worst: f64,
-    /// Where that is, as `frame · joints + joint`: the first such sample, up to the rounding of the type.
+    /// Index of that sample, as `frame · joints + joint`: the first one, up to the rounding of the type.
     pub index: usize,
 }
 
 /// Samples per task.
 const TILE: usize = 64 * 1024;
 
-/// Samples between looks at what was found: few enough that one odd sample costs little.
+/// Samples between two checks for unusual values: few, so that one of them costs little.
 const BLOCK: usize = 1024;
 
-/// Accumulators side by side: one vector of float32 at the widest level.
+/// Number of accumulators: one vector of float32 at the widest level.
 const LANES: usize = 16;
 
-/// What a stretch of samples holds.
+/// Extremes of a range of samples.
 #[derive(Debug, Clone, Copy)]
 struct Extremes<T> {
     missing: usize,
@@ -50,7 +50,7 @@ impl<T: Real> Extremes<T> {
     }
 }
 
-/// Squared lengths that are 0 or infinite look alike for missing samples and for absurd ones: this asks each component.
+/// Squared lengths of 0 or infinity may be missing samples or extreme ones: this checks each component.
 #[inline(always)]
 fn carefully<T: Real>(rows: &[T]) -> Extremes<T> {
     let mut found = Extremes::none();
@@ -119,7 +119,7 @@ fn deviation<T: Real>(q: [T; 4]) -> f64 {
     (dot(q, q).sqrt() - 1.0).abs()
 }
 
-/// The worst of all samples where a squared length overflowed: by every deviation in float64.
+/// The largest deviation if a squared length overflowed: computed in float64 for all samples.
 #[cold]
 fn worst_of_absurd<T: Real>(q: &[T]) -> (f64, usize) {
     let samples = q.chunks_exact(4).map(of_row).enumerate().filter(|&(_, q)| !is_missing(q));
@@ -131,7 +131,7 @@ fn worst_of_absurd<T: Real>(q: &[T]) -> (f64, usize) {
 
 /// Counts the missing samples, and finds the sample that is farthest from unit length.
 ///
-/// One pass at about the speed of memory; the place of the worst sample is looked up afterwards.
+/// One pass at about the speed of memory; the index of the worst sample is located afterwards.
 ///
 /// # Errors
 /// None but those of the thread pool's callers.

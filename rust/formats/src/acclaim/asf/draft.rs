@@ -7,7 +7,7 @@ use crate::text::{decode, quote, words};
 
 const XYZ: [Axis; 3] = [Axis::X, Axis::Y, Axis::Z];
 
-/// The root or a bone while its lines come in.
+/// The root or a bone while its lines are read.
 #[derive(Default)]
 pub(super) struct Draft {
     pub(super) line: usize,
@@ -84,7 +84,7 @@ impl Draft {
         Ok(())
     }
 
-    /// Pairs such as `(-160.0 20.0)(-inf inf)`. Limits do not bear on the motion: what cannot be read is left out.
+    /// Pairs such as `(-160.0 20.0)(-inf inf)`. Limits do not affect the motion: unreadable ones are left out.
     fn limit(&mut self, line: usize, text: &[u8], notes: &mut Vec<Note>) {
         for pair in text.split(|&b| b == b'(').map(<[u8]>::trim_ascii).filter(|pair| !pair.is_empty()) {
             let inside = pair.strip_suffix(b")").unwrap_or(pair);

@@ -10,10 +10,10 @@ use std::collections::HashMap;
 
 /// Reads an ASF skeleton (also under the extension `.asx`).
 ///
-/// Sections and bone entries that do not bear on the motion are skipped (`:documentation`, `:skin`, `:namespace`, …).
+/// Sections and bone entries that do not affect the motion are skipped (`:documentation`, `:skin`, `:namespace`, …).
 ///
 /// # Errors
-/// [`Error`] with line and reason where the text is no ASF, a bone cannot be understood, or the hierarchy is no tree.
+/// [`Error`] with line and reason if the text is not ASF, a bone is invalid, or the hierarchy is not a tree.
 pub fn parse_asf(bytes: &[u8]) -> Result<Skeleton, Error> {
     let mut notes = Vec::new();
     let text = text::open(bytes, &mut notes)?;
@@ -50,7 +50,7 @@ struct Parser {
     bones: Vec<Draft>,
     /// The bone between `begin` and `end`.
     open: Option<Draft>,
-    /// Parent of each bone that `:hierarchy` lists, `None` for the root.
+    /// Parent of each bone in `:hierarchy`, `None` for the root.
     parents: HashMap<usize, Option<usize>>,
     has_hierarchy: bool,
     notes: Vec<Note>,
@@ -227,7 +227,7 @@ impl Parser {
 
 const NO_UNITS: Units = Units { mass: 1.0, length: 1.0, angle: AngleUnit::Degrees };
 
-/// The bones in their order, each after its parent.
+/// The bones in order, each after its parent.
 fn parents_first(parents: &[Option<usize>], bones: &[Draft]) -> Result<Vec<usize>, Error> {
     let mut order = Vec::with_capacity(parents.len());
     let mut placed = vec![false; parents.len()];
