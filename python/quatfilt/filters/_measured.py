@@ -25,6 +25,9 @@ _LEAST_CONFIDENCE = 0.01
 _QUIET = 0.25
 """Quantile over time of the variance that stands for the quiet part."""
 
+_LEAST_SHARE = 0.35
+"""Share of the level that is taken for noise where it may as well be what fast motion leaves in the differences."""
+
 
 @dataclass(frozen=True)
 class White:
@@ -34,18 +37,24 @@ class White:
     confidence: Array | None
     noise: NDArray[np.float64]
     """``(joints,)``, radians."""
-    _before: Array
-    _developed: tuple[NDArray[np.float64], ...] | None
-    """Reference path and development of the rotations before, and of the white ones."""
-    _shape: tuple[float, NDArray[np.float64], NDArray[np.float64]]
+    before: Array
+    developed: tuple[NDArray[np.float64], ...] | None
+    """Reference path and development of the rotations before, and of the white ones; None where both are the same."""
+    shape: tuple[float, NDArray[np.float64], NDArray[np.float64]]
+    """Colour, spread and axes of the noise, as `whiten` takes them."""
 
     def back(self, result: Array) -> Array:
         """Return filtered white rotations as what they stand for."""
-        if self._developed is None:
+        if self.developed is None:
             return result
-        reference, development, path, flat = self._developed
-        vectors = ops().unwhiten(result, path, flat, *self._shape)
-        return cast("Array", ops().undevelop(self._before, reference, development, vectors))
+        reference, development, path, flat = self.developed
+        vectors = ops().unwhiten(result, path, flat, *self.shape)
+        return cast("Array", ops().undevelop(self.before, reference, development, vectors))
+
+
+def assumed_level(model: Measured) -> NDArray[np.float64]:
+    """Return the level that a filter takes for white noise, ``(joints,)``, radians."""
+    return np.asarray(model.white * (_LEAST_SHARE + (1 - _LEAST_SHARE) * model.evidence))
 
 
 def whitened(
@@ -101,4 +110,4 @@ def _calmed(
     return calm, np.ascontiguousarray(trust * weights[:, None]), noise * at_one * math.sqrt(mean)
 
 
-__all__ = ["White", "whitened"]
+__all__ = ["White", "assumed_level", "whitened"]

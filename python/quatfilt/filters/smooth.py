@@ -10,7 +10,7 @@ from quatfilt._backend import ops
 from quatfilt._typing import Array, Mask, PerJoint
 from quatfilt.filters import _development, _paths, _spans
 from quatfilt.filters._gains import weights
-from quatfilt.filters._measured import whitened
+from quatfilt.filters._measured import assumed_level, whitened
 from quatfilt.noise._measure import measure
 
 _STRONGEST = 1e6
@@ -27,9 +27,6 @@ _NOISES: tuple[Noise, ...] = ("white", "measured")
 _LONGEST_FREEZE = 0.25, 15
 """Seconds, and frames where the frame rate is not known: joints that repeat their sample for longer are frozen. What they did
 meanwhile is not known, and they stay as they are."""
-
-_LEAST_SHARE = 0.35
-"""Share of the level that is taken for noise where it may as well be what fast motion leaves in the differences."""
 
 _PATCH_ROUNDS = 1
 """How often groups of similar patches are smoothed: a second time gains at strong noise what it loses at weak noise."""
@@ -167,7 +164,7 @@ def with_translation(
     if not clip.unchanged:
         if measured:
             model = measure(clip.observed)
-            levels = scale * model.white * (_LEAST_SHARE + (1 - _LEAST_SHARE) * model.evidence)
+            levels = scale * assumed_level(model)
         else:
             levels = scale * ops().noise_level(clip.observed).astype(np.float64)
         if translation is not None:
