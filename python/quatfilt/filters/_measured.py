@@ -28,6 +28,13 @@ _QUIET = 0.25
 _LEAST_SHARE = 0.35
 """Share of the level that is taken for noise where it may as well be what fast motion leaves in the differences."""
 
+_LEARNED_EVIDENCE = 0.5
+"""Evidence of noise up to which there is no learned correction: the network has seen noise alone, and takes the motion of a clean clip for it."""
+
+_LEARNED_SHARE = 1 / 3
+"""Share of the learned correction where the noise is coloured or unsteady: what its network reads there depends on how well the noise was
+measured."""
+
 
 @dataclass(frozen=True)
 class White:
@@ -55,6 +62,12 @@ class White:
 def assumed_level(model: Measured) -> NDArray[np.float64]:
     """Return the level that a filter takes for white noise, ``(joints,)``, radians."""
     return np.asarray(model.white * (_LEAST_SHARE + (1 - _LEAST_SHARE) * model.evidence))
+
+
+def learned_share(model: Measured) -> float:
+    """Return the part of the learned correction that counts, from 0 to 1."""
+    sure = max(model.evidence - _LEARNED_EVIDENCE, 0) / (1 - _LEARNED_EVIDENCE)
+    return sure if model.colour == 0 and model.steady else sure * _LEARNED_SHARE
 
 
 def whitened(
@@ -110,4 +123,4 @@ def _calmed(
     return calm, np.ascontiguousarray(trust * weights[:, None]), noise * at_one * math.sqrt(mean)
 
 
-__all__ = ["White", "assumed_level", "whitened"]
+__all__ = ["White", "assumed_level", "learned_share", "whitened"]
