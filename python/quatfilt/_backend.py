@@ -3,22 +3,24 @@
 A backend is a module of free functions. Both have the same functions with the same positional arguments.
 """
 
+import importlib
 import os
 import threading
 from types import ModuleType, TracebackType
 from typing import Literal, Self
 
-from quatfilt import _core, _reference
+from quatfilt import _core
 
 Backend = Literal["rust", "numpy"]
 
-_MODULES: dict[str, ModuleType] = {"rust": _core, "numpy": _reference}
+_MODULES: dict[str, str] = {"rust": "quatfilt._core", "numpy": "quatfilt._reference"}
+"""The modules by name; the reference is loaded when it is chosen."""
 
 
 def _checked(name: object) -> ModuleType:
     if name not in _MODULES:
         raise ValueError(f"backend: expected 'rust' or 'numpy', got {name!r}")
-    return _MODULES[str(name)]
+    return importlib.import_module(_MODULES[str(name)])
 
 
 _current = _checked(os.environ.get("QUATFILT_BACKEND", "rust"))

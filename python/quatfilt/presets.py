@@ -28,17 +28,19 @@ class Preset:
 
 
 BEST: Final = Preset(
-    "what method='auto' runs", {"despike": {}, "smooth": {"joints": "together", "noise": "measured"}}
+    "what method='auto' runs",
+    {"despike": {"radius": "auto"}, "smooth": {"joints": "together", "noise": "measured"}},
 )
 """The best chain that this version has, for clips of which nothing is known."""
 
 PRESETS: Final[dict[str, Preset]] = {
     "optical": Preset(
         "markers and infrared cameras, 100 frames per second and more: little noise, swapped and hidden markers",
-        {"despike": {}, "smooth": {"joints": "together"}},
+        {"despike": {"radius": "auto"}, "smooth": {"joints": "together"}},
         {"max_gap": 0.5},
         {
             "despike": "markers that change places throw a limb about for a frame or two",
+            "despike.radius": "runs of several frames lie close together where markers are confused; 10 frames at 120 per second",
             "smooth.joints": "white noise at a high frame rate is what the automatic smoother is for, and a body repeats itself",
             "max_gap": "a limb hidden for longer may have done anything; longer gaps stay visible as such",
         },

@@ -207,6 +207,9 @@ def test_demo_without_matplotlib_says_how_to_get_it(tmp_path):
 def test_help(verb):
     text = run(*verb, "--help").stdout
     assert text.startswith("Usage: quatfilt")
+
+
+def test_help_is_shown_for_h_and_for_nothing():
     assert run("-h").stdout == run().stdout
 
 

@@ -12,7 +12,7 @@ from commands import refused, run
 from patience import PATIENCE
 from quatfilt.cli import main
 from quatfilt.evaluation.synthetic import walk
-from quatfilt.reconstruction.database.writer import folder_beside
+from quatfilt.formats._atomic import folder_beside
 
 
 @pytest.fixture(scope="module", name="takes")
@@ -135,11 +135,11 @@ def test_bad_input(takes, tmp_path, capsys):
     out, empty = tmp_path / "db", tmp_path / "empty"
     empty.mkdir()
     expected = {
-        (empty,): f"{empty}: expected motion files (.amc, .bvh, .npz), got none",
+        (empty,): f"{empty}: no motion files (.bvh, .amc or .npz) found",
         (tmp_path / "none",): f"{tmp_path / 'none'}: No such file or directory",
         (
             takes / "day" / "notes.txt",
-        ): f"{takes / 'day' / 'notes.txt'}: expected .amc, .bvh, .npz or a folder, got .txt",
+        ): f"{takes / 'day' / 'notes.txt'}: expected .bvh, .amc or .npz, or a folder, got .txt",
         (takes, "--fps", 0): "fps: expected a number above 0, got 0.0",
         (takes, "--source-fps", 0): "--source-fps: expected a number above 0, got 0.0",
         (takes, "--workers", 0): "--workers: expected an integer of at least 1, got 0",

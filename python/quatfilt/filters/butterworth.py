@@ -4,7 +4,6 @@ from typing import Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import signal
 
 from quatfilt import _validation
 from quatfilt._backend import ops
@@ -126,6 +125,8 @@ def with_translation(
 
 def _design(cutoff: NDArray[np.float64], order: int) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
     """Design a low pass for each cutoff, in periods per frame: sections, their steady states, and SciPy's padding."""
+    from scipy import signal  # noqa: PLC0415 - SciPy is loaded when it is needed
+
     distinct, which = np.unique(cutoff, return_inverse=True)
     sections = np.empty((len(distinct), (order + 1) // 2, 6))
     states = np.empty((*sections.shape[:2], 2))

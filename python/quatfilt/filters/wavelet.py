@@ -5,7 +5,6 @@ from typing import Any, Literal, TypeAlias, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import Rotation
 
 from quatfilt import _validation
 from quatfilt._backend import ops
@@ -179,6 +178,8 @@ def _principal_axes(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _noise(rotations: Array, axes: NDArray[np.float64]) -> NDArray[np.float64]:
     """Estimate the noise of rotations along axes: then it does not depend on how the frame of a joint was chosen."""
+    from scipy.spatial.transform import Rotation  # noqa: PLC0415 - SciPy is loaded when it is needed
+
     turn = np.roll(Rotation.from_matrix(axes).as_quat(), 1, axis=-1).astype(rotations.dtype)
     turns = np.ascontiguousarray(np.broadcast_to(turn, rotations.shape))
     turned = ops().multiply(rotations.reshape(-1, 4), turns.reshape(-1, 4))

@@ -1,16 +1,13 @@
 """Reading and writing motions, whatever the format."""
 
-import contextlib
 import os
-import secrets
-import shutil
-from collections.abc import Callable
 from pathlib import Path
 from typing import Literal, TypeAlias
 
 from quatfilt import _validation
-from quatfilt.errors import FileAccessError, FileFormatError
-from quatfilt.formats import acclaim, bvh, npz
+from quatfilt.errors import FileFormatError
+from quatfilt.formats._bytes import read_bytes, write_bytes
+from quatfilt.formats._table import FORMATS, READABLE, WRITABLE, listed
 from quatfilt.motion.motion import Motion
 from quatfilt.motion.skeleton import Skeleton
 
@@ -80,24 +77,18 @@ def read_motion(
     rate = None if fps is None else _validation.number(fps, "fps", above=0)
     first = _validation.choice(first_frame, "first_frame", ("auto", "keep", "drop"))
     name = _validation.path(path, "path")
-    extension = _extension(name)
+    extension = Path(name).suffix.lower()
     if extension in (".asf", ".asx"):
         raise FileFormatError(name, None, "a skeleton holds no motion: read the .amc, with this as skeleton=")
-    if extension not in (".bvh", ".amc", ".npz"):
-        raise FileFormatError(name, None, f"expected .bvh, .amc or .npz, got {extension or 'no extension'}")
-    if extension != ".amc" and skeleton is not None:
+    if extension not in FORMATS:
+        raise FileFormatError(name, None, f"expected {listed(READABLE)}, got {extension or 'no extension'}")
+    entry = FORMATS[extension]
+    if skeleton is not None and not entry.needs_skeleton:
         raise TypeError(f"skeleton: expected None for {extension}, which has its own")
     data = read_bytes(name)
     if not data:
         raise FileFormatError(name, None, "the file is empty")
-    if extension == ".bvh":
-        return bvh.read(name, data, fps=rate, first_frame=first)
-    if extension == ".npz":
-        return npz.read(name, data, fps=rate, first_frame=first)
-    if not isinstance(skeleton, Skeleton):
-        asf = acclaim.find_skeleton(name) if skeleton is None else _validation.path(skeleton, "skeleton")
-        skeleton = acclaim.read_skeleton(asf, read_bytes(asf))
-    return acclaim.read(name, data, skeleton, fps=rate, first_frame=first)
+    return entry.read(name, data, rate, first, skeleton)
 
 
 def write_motion(path: PathLike, motion: Motion) -> None:
@@ -141,73 +132,14 @@ def write_motion(path: PathLike, motion: Motion) -> None:
     if not isinstance(motion, Motion):
         raise TypeError(f"motion: expected a Motion, got {type(motion).__name__}")
     name = _validation.path(path, "path")
-    extension = _extension(name)
-    if extension == ".bvh":
-        write_bytes(name, lambda: bvh.write(name, motion))
-    elif extension == ".npz":
-        write_bytes(name, lambda: npz.write(motion))
-    elif extension == ".amc":
-        raise FileFormatError(name, None, "AMC is read only: write .bvh or .npz")
-    else:
-        raise FileFormatError(name, None, f"expected .bvh or .npz, got {extension or 'no extension'}")
-
-
-def _extension(name: str) -> str:
-    return Path(name).suffix.lower()
-
-
-def read_bytes(path: str) -> bytes:
-    """Return what a file holds."""
-    try:
-        with Path(path).open("rb") as file:
-            return file.read()
-    except (OSError, ValueError) as error:
-        raise FileAccessError(path, reason(error)) from None
-
-
-def write_bytes(path: str, content: Callable[[], bytes]) -> None:
-    """Write what `content` returns under a temporary name beside `path`, and rename it."""
-    try:
-        target = Path(path).resolve()
-        check_writable(target)
-        data = content()
-        if target.exists() and not target.is_file():  # a pipe, a terminal
-            target.write_bytes(data)
-        else:
-            _replace(target, data)
-    except (OSError, ValueError) as error:
-        if isinstance(error, FileFormatError):
-            raise
-        raise FileAccessError(path, reason(error)) from None
-
-
-def check_writable(target: Path) -> None:
-    """Refuse a place where no file can be written."""
-    if target.is_dir():
-        raise IsADirectoryError(None, "Is a directory")
-    if target.exists() and not os.access(target, os.W_OK):
-        raise PermissionError(None, "Permission denied")
-    if not target.parent.is_dir():
-        raise FileNotFoundError(None, "No such directory")
-
-
-def _replace(target: Path, data: bytes) -> None:
-    temporary = target.with_name(f".{target.name[:40]}.{secrets.token_hex(6)}.tmp")
-    try:
-        with temporary.open("xb") as file:
-            file.write(data)
-        if target.exists():
-            shutil.copymode(target, temporary)
-        temporary.replace(target)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            temporary.unlink()
-        raise
-
-
-def reason(error: Exception) -> str:
-    """Return what the system says."""
-    return getattr(error, "strerror", None) or str(error)
+    extension = Path(name).suffix.lower()
+    entry = FORMATS.get(extension)
+    if entry is None:
+        raise FileFormatError(name, None, f"expected {listed(WRITABLE)}, got {extension or 'no extension'}")
+    write = entry.write
+    if write is None:
+        raise FileFormatError(name, None, f"{extension[1:].upper()} is read only: write {listed(WRITABLE)}")
+    write_bytes(name, lambda: write(name, motion))
 
 
 __all__ = ["FirstFrame", "PathLike", "read_motion", "write_motion"]

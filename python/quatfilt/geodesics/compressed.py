@@ -11,7 +11,8 @@ from quatfilt import _validation
 from quatfilt._backend import ops
 from quatfilt._typing import Array
 from quatfilt.errors import FileFormatError
-from quatfilt.formats.files import PathLike, read_bytes, write_bytes
+from quatfilt.formats._bytes import read_bytes, write_bytes
+from quatfilt.formats.files import PathLike
 
 _MAGIC = b"\x93QFPGA\r\n"
 """No text begins with it, and a transfer that changes the ends of lines spoils it."""

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 Floats = NDArray[np.float64]
 
@@ -65,6 +64,8 @@ class LatentProcess:
 
         It minimises ``|y − f(x)|² / 2σ²(x) + (D/2) ln σ²(x) + |x|² / 2`` (Grochow et al. 2004, eq. 6, with equal weights).
         """
+        from scipy.optimize import minimize  # noqa: PLC0415 - SciPy is loaded when it is needed
+
         count = len(pose)
 
         def objective(x: Floats) -> tuple[float, Floats]:

@@ -13,11 +13,12 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from quatfilt import _validation
 from quatfilt.cli import _options, _output
 from quatfilt.cli.database._describe import describe, summary
+from quatfilt.formats._atomic import folder_beside
+from quatfilt.formats._table import READABLE, listed
 from quatfilt.reconstruction.database import MotionDatabase, building
 from quatfilt.reconstruction.database.body import OtherJointsError
 from quatfilt.reconstruction.database.folders import Folders
 from quatfilt.reconstruction.database.takes import How
-from quatfilt.reconstruction.database.writer import folder_beside
 
 
 def build(
@@ -25,16 +26,14 @@ def build(
         list[Path],
         typer.Argument(
             metavar="DIR|FILE…",
-            help="Folders, searched at any depth for .bvh, .amc and .npz, and such files.",
+            help=f"Motion files ({listed(READABLE)}), and folders that are searched for them at any depth.",
             show_default=False,
         ),
     ],
     *,
     output: Annotated[
         Path,
-        typer.Option(
-            "--output", "-o", metavar="DB", help="Where the database is written.", show_default=False
-        ),
+        typer.Option("--output", "-o", metavar="DB", help="Database file to write.", show_default=False),
     ],
     fps: Annotated[
         float, typer.Option("--fps", metavar="HZ", help="Frames per second of the database.")
@@ -42,11 +41,11 @@ def build(
     mirror: Annotated[
         bool, typer.Option("--mirror", help="Add the mirror image of every clip, left and right exchanged.")
     ] = False,
-    up: Annotated[str, typer.Option("--up", metavar="x|y|z", help="The vertical: y, in AMASS z.")] = "y",
+    up: Annotated[str, typer.Option("--up", metavar="x|y|z", help="Vertical axis: y, or z for AMASS.")] = "y",
     source_fps: Annotated[
         float | None,
         typer.Option(
-            "--source-fps", metavar="HZ", help="Frames per second of the files, instead of what they say."
+            "--source-fps", metavar="HZ", help="Frames per second of the files, instead of the rate in them."
         ),
     ] = None,
     skip_others: Annotated[
@@ -70,14 +69,16 @@ def build(
     workers: Annotated[
         int | None,
         typer.Option(
-            "--workers", metavar="N", help="How many files are read at once. [default: one per processor]"
+            "--workers",
+            metavar="N",
+            help="Number of files that are read at once. [default: one per processor]",
         ),
     ] = None,
     graph: Annotated[
         bool,
         typer.Option(
             "--graph",
-            help="Find the neighbours of each pose too; it takes a few minutes for a million poses.",
+            help="Add the graph of neighbours; it takes a few minutes for a million poses.",
         ),
     ] = False,
     json: _options.Json = False,

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from quatfilt import _validation, sampling
 from quatfilt.evaluation._plot import figure
-from quatfilt.formats.files import write_bytes
+from quatfilt.formats._bytes import write_bytes
 from quatfilt.motion.motion import Motion
 from quatfilt.motion.report import measured, picture, text
 from quatfilt.motion.report.measured import Foot, Joint, Placed

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from quatfilt import _validation
 from quatfilt.errors import FileAccessError, FileFormatError
-from quatfilt.formats.files import reason
+from quatfilt.formats._atomic import reason
 from quatfilt.reconstruction.database.contents import Clips, Contents, EndSites
 from quatfilt.reconstruction.database.writer import ALIGNMENT, HEADER, MAGIC, VERSION, Writer
 

@@ -7,12 +7,11 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
 from quatfilt.errors import FileAccessError, QuatfiltError
+from quatfilt.formats._table import READABLE, listed
 from quatfilt.formats.files import read_motion
 from quatfilt.motion.motion import Motion
 from quatfilt.motion.skeleton import Skeleton
 from quatfilt.reconstruction.database.body import Body
-
-EXTENSIONS = (".amc", ".bvh", ".npz")
 
 _WAITING = 2
 """Motions per reader that are read ahead: readers need not wait, and memory stays bounded."""
@@ -54,7 +53,7 @@ class Folders:
                 found.setdefault(path, name)
         if not found:
             names = ", ".join(map(str, places)) or "folders"
-            raise ValueError(f"{names}: expected motion files ({', '.join(EXTENSIONS)}), got none")
+            raise ValueError(f"{names}: no motion files ({listed(READABLE)}) found")
         self._found = list(found.items())
         self._fps = source_fps
         self._skip_others = skip_others
@@ -124,15 +123,15 @@ def _below(place: Path) -> Iterator[tuple[Path, str]]:
     if not place.exists():
         raise FileAccessError(str(place), "No such file or directory")
     if not place.is_dir():
-        if place.suffix.lower() not in EXTENSIONS:
+        if place.suffix.lower() not in READABLE:
             raise ValueError(
-                f"{place}: expected {', '.join(EXTENSIONS)} or a folder, got {place.suffix or 'no extension'}"
+                f"{place}: expected {listed(READABLE)}, or a folder, got {place.suffix or 'no extension'}"
             )
         yield place, place.stem
         return
-    files = (path for path in place.rglob("*") if path.suffix.lower() in EXTENSIONS and path.is_file())
+    files = (path for path in place.rglob("*") if path.suffix.lower() in READABLE and path.is_file())
     for path in sorted(files, key=lambda path: path.relative_to(place).as_posix()):
         yield path, path.relative_to(place).with_suffix("").as_posix()
 
 
-__all__ = ["EXTENSIONS", "Folders"]
+__all__ = ["Folders"]

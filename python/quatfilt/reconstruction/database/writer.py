@@ -1,32 +1,17 @@
-"""Writes the file of a database in one go, under a temporary name.
+"""Writes the file of a database in one go, see `Replacement`."""
 
-A process that is killed leaves the file that was there before, and one of the temporary name beside it, which the next one that
-writes there removes.
-"""
-
-import glob
 import json
-import os
-import secrets
-import shutil
 import struct
-import sys
-import tempfile
 import zlib
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
-from typing import IO, Any, Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from quatfilt.errors import FileAccessError
-from quatfilt.formats.files import check_writable, reason
-
-if sys.platform != "win32":
-    import fcntl
+from quatfilt.formats._atomic import Replacement, reason
 
 MAGIC = b"\x89quatfiltdb\r\n\x1a\n\0"
 """The first bytes: no text, and damaged by whatever changes the ends of lines."""
@@ -37,8 +22,6 @@ HEADER = struct.Struct("<16sIIQQQ12sI")
 
 ALIGNMENT = 64
 """Bytes at whose multiples arrays begin: a cache line."""
-
-_UNFINISHED = ".unfinished"
 
 
 class Writer:
@@ -62,27 +45,11 @@ class Writer:
         self._sections: dict[str, dict[str, Any]] = {}
         self._last = ""
         try:
-            self._target = Path(path).resolve()
-            check_writable(self._target)
-            _check_regular(self._target)
-            _remove_leftovers(self._target)
-            stem = self._target.name[:40]
-            self._temporary = self._target.with_name(f".{stem}.{secrets.token_hex(6)}{_UNFINISHED}")
-            self._file = self._begun()
+            self._replacement = Replacement(Path(path).resolve())
+            self._file = self._replacement.file
+            self._file.seek(HEADER.size)  # written at the end
         except (OSError, ValueError) as error:
             raise FileAccessError(path, reason(error)) from None
-
-    def _begun(self) -> IO[bytes]:
-        """Return the temporary file, or leave none, even where Ctrl-C comes in between."""
-        try:
-            file = self._temporary.open("xb")
-            _lock(file)
-            file.write(bytes(HEADER.size))
-        except BaseException:
-            with suppress(OSError):
-                self._temporary.unlink()
-            raise
-        return file
 
     def __enter__(self) -> Self:
         return self
@@ -90,9 +57,7 @@ class Writer:
     def __exit__(
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._file.close()
-        with suppress(OSError):
-            self._temporary.unlink()
+        self._replacement.__exit__(kind, value, trace)
 
     def append(self, name: str, rows: NDArray[Any]) -> None:
         """Append rows to an array, which is begun unless it is the last one that was appended to.
@@ -149,7 +114,7 @@ class Writer:
         self._file.flush()
         section = self._sections[name]
         return np.memmap(
-            self._temporary,
+            self._replacement.temporary,
             section["dtype"],
             mode="r",
             offset=section["offset"],
@@ -181,85 +146,9 @@ class Writer:
             ]
             self._file.seek(0)
             self._file.write(header + struct.pack("<I", zlib.crc32(header)))
-            self._file.flush()
-            # Renamed before its contents are on the disk, a file could be empty after a power failure.
-            os.fsync(self._file.fileno())
-            if self._target.exists():
-                shutil.copymode(self._target, self._temporary)
-            if sys.platform == "win32":
-                self._file.close()
-            self._temporary.replace(self._target)
+            self._replacement.finish()
         except OSError as error:
             raise FileAccessError(self._path, reason(error)) from None
 
 
-def _check_regular(target: Path) -> None:
-    """Refuse a pipe or a terminal, which cannot be written from the middle."""
-    if target.exists() and not target.is_file():
-        raise OSError(None, "Not a regular file")
-
-
-@contextmanager
-def folder_beside(path: str) -> Iterator[Path]:
-    """Yield an empty folder beside a file that is to be written, for what is written on the way to it.
-
-    It is removed at the end; where the process is killed, by the next one that writes the file.
-
-    Raises
-    ------
-    FileAccessError
-        If the file or the folder cannot be written.
-    """
-    try:
-        target = Path(path).resolve()
-        check_writable(target)
-        _check_regular(target)
-        _remove_leftovers(target)
-        folder = tempfile.TemporaryDirectory(
-            prefix=f".{target.name[:40]}.", suffix=_UNFINISHED, dir=target.parent
-        )
-    except (OSError, ValueError) as error:
-        raise FileAccessError(path, reason(error)) from None
-    with folder as name:
-        if sys.platform == "win32":
-            yield Path(name)
-            return
-        handle = os.open(name, os.O_RDONLY)
-        try:
-            _lock(handle)
-            yield Path(name)
-        finally:
-            os.close(handle)
-
-
-def _lock(file: IO[bytes] | int) -> None:
-    """Hold the file or folder until it is closed; `OSError` where somebody else does."""
-    if sys.platform != "win32":
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-
-
-def _remove_leftovers(target: Path) -> None:
-    """Remove what killed processes left, but not what others are writing."""
-    pattern = f".{glob.escape(target.name[:40])}.*{_UNFINISHED}"
-    for leftover in target.parent.glob(pattern):
-        # Windows does not remove what is open.
-        with suppress(OSError):
-            if sys.platform == "win32":
-                _remove(leftover)
-                continue
-            handle = os.open(leftover, os.O_RDONLY)
-            try:
-                _lock(handle)
-                _remove(leftover)
-            finally:
-                os.close(handle)
-
-
-def _remove(leftover: Path) -> None:
-    if leftover.is_dir():
-        shutil.rmtree(leftover)
-    else:
-        leftover.unlink()
-
-
-__all__ = ["ALIGNMENT", "HEADER", "MAGIC", "VERSION", "Writer", "folder_beside"]
+__all__ = ["ALIGNMENT", "HEADER", "MAGIC", "VERSION", "Writer"]
