@@ -4,7 +4,6 @@ Each crop of a recording gets noise of a drawn kind and level and runs through t
 """
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -14,9 +13,12 @@ from numpy.typing import NDArray
 from quatfilt import _core
 from quatfilt._reference.filters.development import developed_about
 from quatfilt._reference.filters.smooth import gains
-from quatfilt._reference.rotations.quaternion import between, log_short, normalize
+from quatfilt._reference.rotations.quaternion import between, exp, log_short, multiply, normalize
 from quatfilt.evaluation.noises import SIGMA
+from quatfilt.filters._measured import assumed_level, whitened
+from quatfilt.filters._spans import Span
 from quatfilt.motion.defects import find_defects
+from quatfilt.noise._measure import measure
 
 Array = NDArray[np.floating]
 
@@ -35,8 +37,8 @@ KINDS = {"white": 0.62, "ar": 0.16, "student": 0.06, "unsteady": 0.10, "bursts":
 CORRELATION = (0.15, 0.8)
 """Range of the coefficient of AR(1) noise."""
 
-MODELLED = 0.5
-"""Share of crops with temporally correlated or unsteady noise whose level and confidence are those of a measured model, not those of white noise."""
+MODELLED = 0.75
+"""Share of crops whose noise is measured and whitened, as with `noise="measured"`; the noise of the others is taken for white."""
 
 FEW_JOINTS = 0.15
 """Share of crops with a few joints only, drawn without order."""
@@ -116,7 +118,12 @@ def _crop(clip: Array, rng: np.random.Generator) -> Array | None:
 def _add(examples: Examples, truth: Array, rng: np.random.Generator) -> None:
     multiple = math.exp(rng.uniform(math.log(WEAKEST), math.log(STRONGEST)))
     kind = str(rng.choice(list(KINDS), p=list(KINDS.values())))
-    q, noise, confidence = noisy(truth, multiple * SIGMA, kind, rng)
+    q = noisy(truth, multiple * SIGMA, kind, rng)
+    confidence = None
+    if rng.random() < MODELLED:
+        q, truth, confidence, noise = modelled(q, truth)
+    else:
+        noise = _core.noise_level(q).astype(np.float64)
     if noise.min() < gains.LEAST_NOISE:
         return
     smoothed = _core.smooth(q, None, confidence, noise, 0.0)[0]
@@ -161,46 +168,38 @@ def vectors(
     return gains.basis(sources[0], sources[1], sources[2:]), gains.turned(beside(truth), axes)
 
 
-def noisy(
-    truth: Array, sigma: float, kind: str, rng: np.random.Generator
-) -> tuple[Array, Array, Array | None]:
-    """Return a noisy clip, the level of the noise for each joint, and the confidence of the samples."""
+def noisy(truth: Array, sigma: float, kind: str, rng: np.random.Generator) -> Array:
+    """Return a clip with noise of a kind."""
     shape = (*truth.shape[:2], 3)
-    modelled = rng.random() < MODELLED
-    factor, variance = 1.0, np.ones(len(truth))
+    level = np.ones(len(truth))
     noise = rng.standard_normal(shape)
     if kind == "ar":
         correlation = rng.uniform(*CORRELATION)
         for t in range(1, len(noise)):
             noise[t] = correlation * noise[t - 1] + math.sqrt(1 - correlation**2) * noise[t]
-        factor = colour_factor(correlation) if modelled else 1.0
     elif kind == "student":
         noise = rng.standard_t(3, shape) / math.sqrt(3)
     elif kind == "unsteady":
         stretches = rng.choice([2, 0.25], -(-len(truth) // 100))
-        variance = np.repeat(stretches, 100)[: len(truth)] ** 2
+        level = np.repeat(stretches, 100)[: len(truth)]
     elif kind == "bursts":
-        begins = np.flatnonzero(rng.random(len(truth)) < 0.01)
-        variance[[t for begin in begins for t in range(begin, min(begin + 20, len(truth)))]] = 36
-        variance *= 0.09
+        level *= 0.3
+        for begin in np.flatnonzero(rng.random(len(truth)) < 0.01):
+            level[begin : begin + 20] = 1.8
     elif kind == "axis":
         noise *= rng.permutation([0.3, 0.3, 3])
-    moved = qf.multiply(truth, qf.exp(sigma * np.sqrt(variance)[:, None, None] * noise / 2))
-    q = np.ascontiguousarray(moved, dtype=truth.dtype)
-    level = _core.noise_level(q).astype(np.float64) * factor
-    if not modelled or np.ptp(variance) == 0:
-        return q, level, None
-    confidence = np.clip(variance.mean() / variance, 0.02, 1)
-    level = np.full(truth.shape[1], sigma * math.sqrt(variance.mean()))
-    return q, level, np.repeat(confidence[:, None], truth.shape[1], axis=1).astype(truth.dtype)
+    moved = qf.multiply(truth, qf.exp(sigma * level[:, None, None] * noise / 2))
+    return np.ascontiguousarray(moved, dtype=truth.dtype)
 
 
-def colour_factor(correlation: float, orders: Sequence[int] = (4, 6, 8)) -> float:
-    """Return the deviation of AR(1) noise at low frequencies, over what differences of high order measure."""
-    omega = np.linspace(0, np.pi, 1024)
-    spectrum = (1 - correlation**2) / (1 + correlation**2 - 2 * correlation * np.cos(omega))
-    measured = [
-        np.mean((2 - 2 * np.cos(omega)) ** order * spectrum) / np.mean((2 - 2 * np.cos(omega)) ** order)
-        for order in orders
-    ]
-    return math.sqrt(spectrum[omega < np.pi / 8].mean() / min(measured))
+def modelled(q: Array, truth: Array) -> tuple[Array, Array, Array | None, Array]:
+    """Return a clip as smoothing sees it after its noise is measured, the truth of that, its confidence and its level."""
+    model = measure(q)
+    span = Span(slice(0, len(q)), np.arange(q.shape[1]))
+    white = whitened(q, None, assumed_level(model), span, model)
+    if white.developed is not None:
+        reference, _, path, flat = white.developed
+        vectors = developed_about(reference, normalize(truth.astype(np.float64)))[2]
+        beside = _core.whiten(*developed_about(reference, reference)[:2], vectors, *white.shape)[2]
+        truth = multiply(path, exp((beside - flat) / 2)).astype(truth.dtype)
+    return white.rotations, truth, white.confidence, white.noise

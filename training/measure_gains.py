@@ -1,4 +1,4 @@
-"""Measures the learned last step on recordings: decibels over the pilot for kinds and levels of noise, by clip.
+"""Measures the learned last step on recordings: decibels of the automatic chain with it over the chain without, by clip.
 
 python training/measure_gains.py --clips 07_05,86_09 --kinds white,ar5 --multiples 1,5,15 --every 1,4
 """
@@ -10,15 +10,20 @@ from pathlib import Path
 
 import numpy as np
 import quatfilt as qf
-from quatfilt import _core
+from numpy.typing import NDArray
 from quatfilt.evaluation.clips import load
 from quatfilt.evaluation.noises import SIGMA
 from quatfilt.evaluation.smooth_goal import GOAL_CLIPS
+from quatfilt.filters import _gains
 from train_gains import WEIGHTS
 
 
-def added(truth: np.ndarray, sigma: float, kind: str, rng: np.random.Generator) -> np.ndarray:
-    """Return a clip with noise: "white", "ar3" for AR(1) with 0.3, "student", "unsteady", "bursts" or "axis"."""
+def added(
+    truth: NDArray[np.floating], sigma: float, kind: str, rng: np.random.Generator
+) -> NDArray[np.floating]:
+    """Return a clip with noise: "white", "ar3" for AR(1) with 0.3, "student", "unsteady", "bursts", "axis"; "clean" adds none."""
+    if kind == "clean":
+        return truth
     noise = rng.standard_normal((*truth.shape[:2], 3))
     level = np.ones(len(truth))
     if kind.startswith("ar"):
@@ -46,12 +51,12 @@ def main() -> None:
     parser.add_argument("--weights", type=Path, default=WEIGHTS)
     parser.add_argument("--clips", default=",".join(GOAL_CLIPS))
     parser.add_argument("--kinds", default="white")
-    parser.add_argument("--multiples", default="1,5,15")
+    parser.add_argument("--multiples", default="1,5,15,30")
     parser.add_argument("--every", default="1", help="one frame of so many")
     parser.add_argument("--longest", type=int, default=800, help="frames")
+    parser.add_argument("--noise", choices=["measured", "white"], default="measured")
     options = parser.parse_args()
-    with np.load(options.weights) as file:
-        layers = [file[name] for name in ("first", "second", "last")]
+    _gains.FILE = options.weights
     found = defaultdict(list)
     for name in options.clips.split(","):
         (clip,) = load(options.data, {name: ""})
@@ -60,14 +65,22 @@ def main() -> None:
             for kind in options.kinds.split(","):
                 for multiple in map(float, options.multiples.split(",")):
                     rng = np.random.default_rng([*name.encode(), *kind.encode(), round(10 * multiple)])
-                    q = added(truth, multiple * SIGMA, kind, rng)
-                    noise = _core.noise_level(q).astype(np.float64)
-                    smoothed = _core.smooth(q, None, None, noise, 0.0)[0]
-                    body = _core.smooth_body(q, smoothed, None, noise)
-                    patches = _core.smooth_patches(q, body, None, noise, 1)
-                    pilot = _core.smooth_rank(q, patches, None, noise)
-                    result = _core.smooth_gains(q, patches, pilot, None, noise, 1.0, *layers)
-                    before, after = (float(qf.metrics.psnr(truth, x)) for x in (pilot, result))
+                    q = qf.despike(added(truth, multiple * SIGMA, kind, rng), fps=120 / every)
+                    before, after = (
+                        float(
+                            qf.metrics.psnr(
+                                truth,
+                                qf.smooth(
+                                    q,
+                                    joints="together",
+                                    noise=options.noise,
+                                    learned=learned,
+                                    fps=120 / every,
+                                ),
+                            )
+                        )
+                        for learned in (False, True)
+                    )
                     found[kind, multiple, every].append(after - before)
                     print(
                         f"{name} {120 // every} fps {kind} {multiple:g}: {before:.2f} {after - before:+.2f}",

@@ -206,6 +206,7 @@ CALLS = {
     "segment": lambda a, _b, _v: qf.segment(with_gaps(a), window=20, min_length=5, threshold=0.5),
     "slerp": lambda a, _b, _v: qf.slerp(a, np.arange(FRAMES), np.linspace(0, FRAMES - 1, 10_001)),
     "smooth": lambda a, _b, _v: qf.smooth(with_gaps(a)),
+    "smooth with gains": lambda a, _b, _v: qf.smooth(with_gaps(a)[:600], joints="together", learned=True),
     "wavelet": lambda a, _b, _v: qf.wavelet(with_gaps(a)),
     "weighted_moving_mean": lambda a, _b, _v: qf.weighted_moving_mean(with_gaps(a), iterations=3),
 }

@@ -13,6 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from quatfilt import _core
 from quatfilt.filters._gains import FILE, weights
+from quatfilt.filters._measured import learned_share
+from quatfilt.noise._measure import measure
 
 FEW = settings(max_examples=8)
 """The reference takes its time."""
@@ -191,6 +193,25 @@ def test_the_weights_are_those_of_the_checksum():
     expected, name = FILE.with_suffix(".npz.sha256").read_text().split()
     assert name == FILE.name
     assert hashlib.sha256(FILE.read_bytes()).hexdigest() == expected
+
+
+def test_measured_noise_says_how_much_of_the_correction_counts():
+    """All of it for white noise, a third for coloured noise, nothing for motion without noise."""
+    rng = np.random.default_rng(9)
+    clean = clips.walk(rng, 600, 6)
+    white = rng.standard_normal((600, 6, 3))
+    coloured = white.copy()
+    for t in range(1, len(white)):
+        coloured[t] = 0.8 * coloured[t - 1] + 0.6 * white[t]
+    with_step, without, all_of_it = {}, {}, {}
+    for name, noise in {"clean": 0 * white, "white": white, "coloured": coloured}.items():
+        q = qf.multiply(clean, qf.exp(0.03 * noise))
+        options = {"joints": "together", "noise": "measured"}
+        with_step[name], without[name] = (qf.smooth(q, learned=x, **options) for x in (True, False))
+        all_of_it[name] = learned_share(measure(q))
+    np.testing.assert_array_equal(with_step["clean"], without["clean"])
+    assert clips.angles(with_step["white"], without["white"]).max() > 1e-6
+    assert all_of_it == {"clean": 0, "white": 1, "coloured": 1 / 3}
 
 
 def test_the_step_can_be_left_out():

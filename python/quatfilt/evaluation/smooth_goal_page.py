@@ -53,7 +53,7 @@ def _conditions(report: Report) -> list[str]:
         "",
         (
             f"`denoise(method={report.method!r})`, without any option, on {len(report.clips)} recordings that nothing was tuned on: the "
-            f"first {LONGEST} frames, steady joints, Gaussian noise of m · {SIGMA} rad per component of the rotation vector, "
+            f"first {LONGEST} frames, steady joints, white Gaussian noise of m · {SIGMA} rad per component of the rotation vector, "
             f"{report.seeds} seeds. Against it stands, for each recording and level, the best of {rows}, each with the best of 17 settings "
             "by the truth, on rotation vectors or components, whichever is better."
         ),

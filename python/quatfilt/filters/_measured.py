@@ -25,6 +25,16 @@ _LEAST_CONFIDENCE = 0.01
 _QUIET = 0.25
 """Quantile over time of the variance that stands for the quiet part."""
 
+_LEAST_SHARE = 0.35
+"""Share of the level that is taken for noise where it may as well be what fast motion leaves in the differences."""
+
+_LEARNED_EVIDENCE = 0.5
+"""Evidence of noise up to which there is no learned correction: the network has seen noise alone, and takes the motion of a clean clip for it."""
+
+_LEARNED_SHARE = 1 / 3
+"""Share of the learned correction where the noise is coloured or unsteady: what its network reads there depends on how well the noise was
+measured."""
+
 
 @dataclass(frozen=True)
 class White:
@@ -34,18 +44,30 @@ class White:
     confidence: Array | None
     noise: NDArray[np.float64]
     """``(joints,)``, radians."""
-    _before: Array
-    _developed: tuple[NDArray[np.float64], ...] | None
-    """Reference path and development of the rotations before, and of the white ones."""
-    _shape: tuple[float, NDArray[np.float64], NDArray[np.float64]]
+    before: Array
+    developed: tuple[NDArray[np.float64], ...] | None
+    """Reference path and development of the rotations before, and of the white ones; None where both are the same."""
+    shape: tuple[float, NDArray[np.float64], NDArray[np.float64]]
+    """Colour, spread and axes of the noise, as `whiten` takes them."""
 
     def back(self, result: Array) -> Array:
         """Return filtered white rotations as what they stand for."""
-        if self._developed is None:
+        if self.developed is None:
             return result
-        reference, development, path, flat = self._developed
-        vectors = ops().unwhiten(result, path, flat, *self._shape)
-        return cast("Array", ops().undevelop(self._before, reference, development, vectors))
+        reference, development, path, flat = self.developed
+        vectors = ops().unwhiten(result, path, flat, *self.shape)
+        return cast("Array", ops().undevelop(self.before, reference, development, vectors))
+
+
+def assumed_level(model: Measured) -> NDArray[np.float64]:
+    """Return the level that a filter takes for white noise, ``(joints,)``, radians."""
+    return np.asarray(model.white * (_LEAST_SHARE + (1 - _LEAST_SHARE) * model.evidence))
+
+
+def learned_share(model: Measured) -> float:
+    """Return the part of the learned correction that counts, from 0 to 1."""
+    sure = max(model.evidence - _LEARNED_EVIDENCE, 0) / (1 - _LEARNED_EVIDENCE)
+    return sure if model.colour == 0 and model.steady else sure * _LEARNED_SHARE
 
 
 def whitened(
@@ -101,4 +123,4 @@ def _calmed(
     return calm, np.ascontiguousarray(trust * weights[:, None]), noise * at_one * math.sqrt(mean)
 
 
-__all__ = ["White", "whitened"]
+__all__ = ["White", "assumed_level", "learned_share", "whitened"]

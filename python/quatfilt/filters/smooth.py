@@ -10,7 +10,7 @@ from quatfilt._backend import ops
 from quatfilt._typing import Array, Mask, PerJoint
 from quatfilt.filters import _development, _paths, _spans
 from quatfilt.filters._gains import weights
-from quatfilt.filters._measured import whitened
+from quatfilt.filters._measured import assumed_level, learned_share, whitened
 from quatfilt.noise._measure import measure
 
 _STRONGEST = 1e6
@@ -27,9 +27,6 @@ _NOISES: tuple[Noise, ...] = ("white", "measured")
 _LONGEST_FREEZE = 0.25, 15
 """Seconds, and frames where the frame rate is not known: joints that repeat their sample for longer are frozen. What they did
 meanwhile is not known, and they stay as they are."""
-
-_LEAST_SHARE = 0.35
-"""Share of the level that is taken for noise where it may as well be what fast motion leaves in the differences."""
 
 _PATCH_ROUNDS = 1
 """How often groups of similar patches are smoothed: a second time gains at strong noise what it loses at weak noise."""
@@ -70,7 +67,8 @@ def smooth(
         time. What repeats itself, in time or between joints, is kept, and noise is not. Takes about six times as long.
     learned : bool, default False
         With ``joints="together"``, True adds a last step, which corrects the result in several scales of time with gains from a
-        small network that was trained on recordings of other people. With ``"apart"`` there is no such step.
+        small network that was trained on recordings of other people. Where the measured noise is coloured or unsteady, a third of
+        the correction counts; with measured noise that may as well be motion, nothing of it. With ``"apart"`` there is no such step.
     noise : {"white", "measured"}, default "white"
         With ``"measured"`` the noise need be neither white nor steady: its colour, its axes, its level along time and exact repeats
         are measured first, see `noise_model`. Samples that repeat the one before have confidence 0; stretches with more noise have
@@ -155,7 +153,7 @@ def with_translation(
 ) -> tuple[Array, Array | None]:
     """Smooth as `smooth` does, and a translation ``(frames, 3)`` by its own noise and with the strength of joint 0."""
     together = _validation.choice(joints, "joints", _JOINTS) == "together"
-    learned = _validation.switch(learned, "learned")
+    share = 1.0 if _validation.switch(learned, "learned") else 0.0
     measured = _validation.choice(noise, "noise", _NOISES) == "measured"
     clip = _spans.prepare(q, together=together, fps=fps, **missing)
     scale = _validation.per_joint(
@@ -167,7 +165,8 @@ def with_translation(
     if not clip.unchanged:
         if measured:
             model = measure(clip.observed)
-            levels = scale * model.white * (_LEAST_SHARE + (1 - _LEAST_SHARE) * model.evidence)
+            levels = scale * assumed_level(model)
+            share *= learned_share(model)
         else:
             levels = scale * ops().noise_level(clip.observed).astype(np.float64)
         if translation is not None:
@@ -187,9 +186,7 @@ def with_translation(
             rotations = _spans.refilled(rotations, trust == 0)
             along = None if along is None else _paths.straightened(along, trust[:, 0] > 0)
         if model is None:
-            return _smoothed(
-                rotations, along, trust, here, position_noise, together=together, learned=learned
-            )
+            return _smoothed(rotations, along, trust, here, position_noise, together=together, learned=share)
         white = whitened(rotations, trust, here, span, model)
         result, moved = _smoothed(
             white.rotations,
@@ -198,7 +195,7 @@ def with_translation(
             white.noise,
             position_noise,
             together=together,
-            learned=learned,
+            learned=share,
         )
         result = white.back(result)
         if frozen is not None:
@@ -217,16 +214,16 @@ def _smoothed(
     position_noise: float,
     *,
     together: bool,
-    learned: bool,
+    learned: float,
 ) -> tuple[Array, Array | None]:
-    """Smooth rotations of white noise, and a translation."""
+    """Smooth rotations of white noise, and a translation; `learned` is the share of the learned correction."""
     result, moved = ops().smooth(rotations, along, trust, levels, position_noise)
     if together:
         result = ops().smooth_body(rotations, result, trust, levels)
         patches = ops().smooth_patches(rotations, result, trust, levels, _PATCH_ROUNDS)
         result = ops().smooth_rank(rotations, patches, trust, levels)
-        if learned:
-            result = ops().smooth_gains(rotations, patches, result, trust, levels, 1.0, *weights())
+        if learned > 0:
+            result = ops().smooth_gains(rotations, patches, result, trust, levels, learned, *weights())
     return cast("Array", result), cast("Array | None", moved)
 
 
