@@ -10,9 +10,7 @@ from quatfilt._typing import Array
 from quatfilt.methods import AUTO, METHODS
 from quatfilt.motion.feet import PLACEMENTS, Placement, with_feet
 from quatfilt.motion.motion import Motion
-
-CALMED = (None, "video")
-"""Presets whose clips may jitter as estimates from video do."""
+from quatfilt.presets import BEST, PRESETS
 
 
 @overload
@@ -57,8 +55,8 @@ def denoise(
         Whether a motion's root translation is filtered too, by each step in its own way; gaps in it are then filled along
         straight lines. A step with ``search_radius=None`` leaves it alone: a pose that comes back comes back elsewhere.
     preset : {"optical", "inertial", "video"} or None, default None
-        A chain with values for a kind of recording; what else is given goes before it. Beside methods of the caller's, it
-        gives values to the steps that it has.
+        A prior for a kind of recording: steps of the automatic method with values, and how likely jitter is that moves as fast as
+        limbs do; what else is given goes before it. Beside methods of the caller's, it gives values to the steps that it has.
     feet : {"keep", "lock"} or None, default "keep"
         What happens to the feet of a motion after the last filter. ``"keep"``: while a foot stands on the ground it follows its path in the
         input, without the noise; a filter alone makes feet slide. ``"lock"``: it stays at one point. None: nothing. Legs are found by the
@@ -88,7 +86,8 @@ def denoise(
     Notes
     -----
     "auto" and presets first look at the source: of held, repeated and interpolated frames only measurements are cleaned, at the
-    source's rate, and a spline leads back to all frames; frozen stretches stay. Jitter of estimates from video is filtered by a low pass.
+    source's rate, and a spline leads back to all frames; frozen stretches stay. Jitter of estimates from video is filtered by a low pass:
+    by default where no person moves like that, with "video" in every stretch whose spectrum shows it, else never.
     ``fps`` tells what that needs.
 
     A chain is its steps one after the other, each with ``gaps="keep"`` but for the last: missing samples are filled anew
@@ -123,7 +122,8 @@ def denoise(
     if placement == "lock":
         raise TypeError(f"feet: expected a Motion to lock its feet, got {type(motion_or_rotations).__name__}")
     steps = chain.plan(method, preset, options)
-    chain.require_rate(steps, preset)
+    if method == AUTO:
+        chain.require_rate(steps, preset)
     scalar_first = options.get("scalar_first", True)
     array = _validation.quaternions(motion_or_rotations, "rotations", scalar_first=scalar_first)
     rotations, _ = _run(method, preset, steps, array, None)
@@ -140,7 +140,8 @@ def _run(
     """Run steps; those of the automatic method and of presets at the rate of the source."""
     if method != AUTO:
         return chain.run(steps, rotations, translation)
-    return sampling.run(steps, rotations, translation, calmed=preset in CALMED)
+    prior = (BEST if preset is None else PRESETS[preset]).jitter
+    return sampling.run(steps, rotations, translation, prior=prior)
 
 
 __all__ = ["METHODS", "denoise"]
