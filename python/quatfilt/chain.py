@@ -80,19 +80,19 @@ def plan(method: str | Sequence[str], preset: str | None, options: Mapping[str, 
 
 
 def require_rate(steps: Sequence[Step], preset: str | None) -> None:
-    """Refuse steps of a preset whose cut-off is in hertz where the frame rate is not given.
+    """Refuse the chain of a preset that measures a cut-off in hertz where the frame rate is not given.
 
     Raises
     ------
     ValueError
-        If `fps` is not among the options of such a step.
+        If the preset expects jitter, and `fps` is not among the options.
     """
-    for step in steps:
-        if preset is not None and "cutoff" in step.chosen and "fps" not in step.chosen:
-            raise ValueError(
-                f"preset {preset!r} needs the frame rate: pass fps=30 (frames per second); the cutoff of its step "
-                f"{step.name} is in hertz"
-            )
+    if preset is None or PRESETS[preset].jitter != "expected":
+        return
+    if any("fps" not in step.chosen for step in steps):
+        raise ValueError(
+            f"preset {preset!r} needs the frame rate: pass fps=30 (frames per second); its cut-off is in hertz"
+        )
 
 
 def names(method: str | Sequence[str], preset: str | None) -> list[str]:

@@ -10,9 +10,7 @@ from quatfilt._typing import Array
 from quatfilt.methods import AUTO, METHODS
 from quatfilt.motion.feet import PLACEMENTS, Placement, with_feet
 from quatfilt.motion.motion import Motion
-
-CALMED = (None, "video")
-"""Presets whose clips may have the jitter of estimates from video."""
+from quatfilt.presets import BEST, PRESETS
 
 
 @overload
@@ -57,8 +55,8 @@ def denoise(
         Whether the root's translation of a motion is filtered too, by each filter; its gaps are then filled along straight lines.
         A filter with ``search_radius=None`` leaves it unchanged: a pose that repeats, repeats at another place.
     preset : {"optical", "inertial", "video"} or None, default None
-        A chain with values for a kind of recording. Other options override it. With ``method=``, only its values for those
-        filters are used.
+        A prior for a kind of recording: filters of the automatic method with values, and how likely jitter is that is as fast as
+        limbs. Other options override it. With ``method=``, only its values for those filters are used.
     feet : {"keep", "lock"} or None, default "keep"
         Feet of a motion after the last filter. ``"keep"``: while a foot stands on the ground it follows its path in the input, without
         the noise; a filter alone makes feet slide. ``"lock"``: it stays at one point. None: as filtered. Legs are found by the names of
@@ -88,8 +86,9 @@ def denoise(
     Notes
     -----
     "auto" and presets first recognise the source: of held, repeated and interpolated frames only the measurements are cleaned, at the
-    source's rate, and a spline gives all frames; frozen stretches stay. Jitter of estimates from video is filtered by a low pass. Both
-    need ``fps``.
+    source's rate, and a spline gives all frames; frozen stretches stay. Jitter of estimates from video is filtered by a low pass:
+    by default where no person moves like that, with "video" in every stretch whose spectrum shows it, otherwise never. All of this
+    needs ``fps``.
 
     In a chain each filter fills the gaps anew, from neighbours that the filters before it have cleaned; filled samples have
     confidence 0.
@@ -125,7 +124,8 @@ def denoise(
             f"feet='lock' needs a Motion, which has a skeleton, got {type(motion_or_rotations).__name__}"
         )
     steps = chain.plan(method, preset, options)
-    chain.require_rate(steps, preset)
+    if method == AUTO:
+        chain.require_rate(steps, preset)
     scalar_first = options.get("scalar_first", True)
     array = _validation.quaternions(motion_or_rotations, "rotations", scalar_first=scalar_first)
     rotations, _ = _run(method, preset, steps, array, None)
@@ -142,7 +142,8 @@ def _run(
     """Run steps; those of the automatic method and of presets at the rate of the source."""
     if method != AUTO:
         return chain.run(steps, rotations, translation)
-    return sampling.run(steps, rotations, translation, calmed=preset in CALMED)
+    prior = (BEST if preset is None else PRESETS[preset]).jitter
+    return sampling.run(steps, rotations, translation, prior=prior)
 
 
 __all__ = ["METHODS", "denoise"]

@@ -15,11 +15,12 @@ from typing import Any, Literal, TypeAlias, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from quatfilt import _validation, chain
+from quatfilt import _validation, chain, jitter
 from quatfilt._backend import ops
 from quatfilt._typing import Array, Mask
-from quatfilt.filters import _development, _spans
+from quatfilt.filters import _spans
 from quatfilt.filters._paths import straightened
+from quatfilt.presets import Jitter
 
 Kind: TypeAlias = Literal["regular", "held", "repeated", "interpolated"]
 
@@ -39,11 +40,11 @@ MOST_EXCESS = 0.8
 """Power of the angular velocity at 7 to 9 Hz over that at 0.4 to 3 Hz above which the filters' own estimate of the noise is better
 than a low pass."""
 
+PAUSE = 2 / 3
+"""Seconds: for so long an estimator of poses that lost a body repeats the last one; longer, and the source is frozen."""
+
 FLIP = math.radians(90)
 """Angle between two frames of the root from which the whole body flips."""
-
-_REFERENCE = 0.13
-"""Deviation of the reference path's Gaussian in periods of the cut-off, as for `butterworth`."""
 
 
 Clean: TypeAlias = Callable[[Sequence[chain.Step], Array, Array | None], tuple[Array, Array | None]]
@@ -128,7 +129,11 @@ def flips(rotations: Array) -> int:
 
 
 def run(
-    steps: Sequence[chain.Step], rotations: Array, translation: Array | None = None, *, calmed: bool = True
+    steps: Sequence[chain.Step],
+    rotations: Array,
+    translation: Array | None = None,
+    *,
+    prior: Jitter = "doubted",
 ) -> tuple[Array, Array | None]:
     """Run filters at the rate of the source, and then the low pass for noise that looks like motion.
 
@@ -140,8 +145,9 @@ def run(
         Scalar first.
     translation : ndarray, shape (frames, 3), or None
         Of the root.
-    calmed : bool, default True
-        Whether jitter that only estimates from video have is filtered, see `tracker_noise` of the reference.
+    prior : {"never", "doubted", "expected"}, default "doubted"
+        Whether jitter that only estimates from video have is filtered, see `tracker_noise` of the reference. "doubted": where no person
+        moves like that, decided for the clip; "expected": where it is likely, decided along time.
 
     Returns
     -------
@@ -159,60 +165,33 @@ def run(
             stacklevel=4,
         )
         source = replace(source, kind="regular")
+    if prior == "expected" and source.kind in ("regular", "repeated"):
+        source = _without_pauses(source, PAUSE * fps)
     plain = source.kind == "regular" and not source.frozen.any()
     clean: Clean = chain.run
-    if calmed and known:
+    if prior == "expected" and known:
+        clean = jitter.filtered_along_time
+    if prior == "doubted" and known:
         measured = clip if plain else at_measurements(clip, source)
-        doubt, cutoff, _, excess, *_ = _jitter(measured, fps / source.spacing)
+        doubt, cutoff, _, excess, *_ = jitter.measured(measured, fps / source.spacing)
         if doubt > 0 and excess < MOST_EXCESS:
-            clean = functools.partial(_low_passed, cutoff)
+            clean = functools.partial(jitter.low_passed, cutoff)
     if plain:
         cleaned, moved = clean(steps, clip, translation)
     else:
         cleaned, moved = _at_measurements(clean, steps, clip, translation, source)
-    if calmed and known and clean is chain.run:
+    if prior == "doubted" and known and clean is chain.run:
         cleaned, moved = _calm(cleaned, moved, source.frozen, fps)
     return cleaned.reshape(rotations.shape), moved
 
 
-def _jitter(rotations: Array, fps: float) -> NDArray[np.float64]:
-    """Return what the kernel `tracker_noise` says of a clip whose gaps are filled."""
-    whole, _ = ops().fill_gaps(rotations, -1, "slerp")
-    return cast("NDArray[np.float64]", ops().tracker_noise(whole, fps))
-
-
-def _low_passed(
-    cutoff: float, steps: Sequence[chain.Step], rotations: Array, translation: Array | None
-) -> tuple[Array, Array | None]:
-    """Filter with the cut-off for jitter of video, with the options that all steps share."""
-    shared = {name: steps[-1].settings[name] for name in ("confidence", "gaps", "max_gap", "fps")}
-    lost: Mask = np.zeros(len(rotations), np.bool_)
-    path = translation
-    if translation is not None:
-        lost = np.asarray(np.isnan(translation).any(axis=1))
-        path = None if lost.all() else straightened(translation, ~lost)
-    clip = _spans.prepare(rotations, scalar_first=True, **shared)
-    fps = float(shared["fps"])
-    if clip.unchanged or cutoff >= fps / 2:
-        return clip.finish(clip.rotations.copy()), translation
-    reference = _development.reference_sigma(np.full(clip.rotations.shape[1], _REFERENCE * fps / cutoff))
-    softness = (2 * math.sin(math.pi * cutoff / fps)) ** 6
-
-    def low_pass(
-        part: Array, along: Array | None, trust: Array | None, there: NDArray[np.intp]
-    ) -> tuple[Array, Array | None]:
-        # A filled sample counts as the straight line that it lies on, unless confidences were given.
-        trust = trust if clip.weighed else None
-        return cast(
-            "tuple[Array, Array | None]", ops().low_pass(part, along, trust, reference[there], softness)
-        )
-
-    result, moved = _development.filtered(clip, path, low_pass)
-    if moved is None:
-        return result, translation
-    if shared["gaps"] == "keep":
-        moved[lost] = np.nan
-    return result, moved
+def _without_pauses(source: Source, longest: float) -> Source:
+    """Take short freezes, in frames, for noise of the estimates: such frames are filtered with the rest."""
+    frozen = source.frozen.copy()
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], frozen, [False]])))
+    for start, end in zip(edges[::2], edges[1::2], strict=True):
+        frozen[start:end] = end - start > longest
+    return Source("regular", np.flatnonzero(~frozen).astype(np.float64), frozen)
 
 
 def _at_measurements(
@@ -299,13 +278,13 @@ def _calm(
     rotations: Array, translation: Array | None, frozen: Mask, fps: float
 ) -> tuple[Array, Array | None]:
     """Filter jitter that only estimates from video have, outside of freezes."""
-    doubt, cutoff, *_ = _jitter(rotations, fps)
+    doubt, cutoff, *_ = jitter.measured(rotations, fps)
     if doubt <= 0:
         return rotations, translation
     live = rotations.copy()
     live[frozen] = np.nan
     shared = {"confidence": None, "gaps": "keep", "max_gap": 0.0, "fps": fps}
-    calm, moved = _low_passed(cutoff, [chain.Step("smooth", shared)], live, translation)
+    calm, moved = jitter.low_passed(cutoff, [chain.Step("smooth", shared)], live, translation)
     calm[frozen] = rotations[frozen]
     if moved is not None and translation is not None:
         moved[frozen] = translation[frozen]

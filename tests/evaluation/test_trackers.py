@@ -35,6 +35,19 @@ def test_the_slow_path_stays(takes):
     assert all(take.masked < 0.6 for take in found)
 
 
+def test_the_preset_for_video(takes):
+    found = [take.presets["video"] for take in of(takes, JITTERING)]
+    assert np.median([one["jerk_left"] for one in found]) <= 0.45
+    assert np.median([one["slow_moved"] for one in found]) <= 0.3
+
+
+@pytest.mark.parametrize("preset", ["optical", "inertial", "video"])
+def test_presets_hardly_change_takes_that_are_clean(takes, preset):
+    for take in of(takes, FILTERED):
+        assert take.presets[preset]["change"] < 0.02
+        assert take.presets[preset]["jerk_left"] > 0.95
+
+
 def test_peaks_stay(takes):
     assert np.mean([take.peaks_kept for take in takes.values()]) >= 0.95
     assert min(take.peaks_kept for take in takes.values()) >= 0.93
@@ -102,6 +115,7 @@ def test_the_page_the_numbers_and_the_picture(takes, tmp_path):
     first = numbers["takes"][0]
     assert f"| {first['name']} |" in page
     assert f"{first['slow_moved']:.3f}" in page
+    assert f"{first['presets']['video']['jerk_left']:.2f} / " in page
     trackers_page.draw(report, tmp_path / "trackers.png")
     assert (tmp_path / "trackers.png").read_bytes().startswith(b"\x89PNG")
 

@@ -82,6 +82,43 @@ def test_jitter_of_video_is_calmed_where_the_rate_is_known():
     assert mean_error(truth, qf.denoise(shaken, fps=30)) < mean_error(truth, shaken)
 
 
+def test_video_is_decided_along_time():
+    """Half of the clip is shaken: it gets calmer, and the far end of the other half stays as the chain alone leaves it."""
+    rng = np.random.default_rng(6)
+    truth = clips.walk(rng, 2400, 6)[::4]
+    shaken = truth.copy()
+    shaken[300:] = sources.video(rng, truth[300:], level=0.08, rho=0.8)
+    result = qf.denoise(shaken, preset="video", fps=30)
+    chain = qf.denoise(shaken, preset="optical", max_gap=2 / 3, fps=30)
+    assert mean_error(result[:150], chain[:150]) < 1e-3
+    assert mean_error(result[400:], chain[400:]) > 0.1
+    assert mean_error(truth[400:], result[400:]) < mean_error(truth[400:], shaken[400:])
+
+
+@pytest.mark.parametrize("sigma", [0.0, 0.02, 0.05])
+def test_video_leaves_quick_claps(sigma):
+    time = np.arange(150)[:, None, None] / 30
+    clap = clips.from_vectors(np.sin(8 * np.pi * time) * np.array([[0.0, 0.0, 1.0]] * 3))
+    noisy = sources.video(np.random.default_rng(7), clap, level=sigma, rho=0.8)
+    result = qf.denoise(noisy, preset="video", fps=30)
+    assert mean_error(clap, result) <= max(mean_error(clap, noisy), 1e-4)
+
+
+@pytest.mark.parametrize("gaps", ["fill", "keep"])
+def test_video_takes_translation_and_missing_samples_along(gaps):
+    rng = np.random.default_rng(8)
+    shaken = sources.video(rng, clips.walk(rng, 800, 4)[::4], level=0.1, rho=0.8)
+    shaken[50:54, 1] = np.nan
+    path = clips.path(rng, 200)
+    path[90:93] = np.nan
+    skeleton = qf.Skeleton(list("abcd"), [-1, 0, 1, 2], np.ones((4, 3)))
+    clean = qf.denoise(qf.Motion(shaken, path, fps=30, skeleton=skeleton), preset="video", gaps=gaps)
+    missing = np.isnan(clean.rotations).any(axis=(1, 2)), np.isnan(clean.translation).any(axis=1)
+    kept = gaps == "keep"
+    np.testing.assert_array_equal(np.flatnonzero(missing[0]), np.arange(50, 54) if kept else [])
+    np.testing.assert_array_equal(np.flatnonzero(missing[1]), np.arange(90, 93) if kept else [])
+
+
 @pytest.mark.parametrize("fps", [30, 60, 120])
 def test_clean_motion_and_claps_are_hardly_changed(fps):
     rng = np.random.default_rng(3)

@@ -167,7 +167,11 @@ def _second_half(frames: int) -> slice:
 
 
 def _swapped(body: Body, level: float, rng: Rng) -> Array:
-    noisy = white(body, level, rng)
+    return _exchanged(body, white(body, level, rng), rng)
+
+
+def _exchanged(body: Body, noisy: Array, rng: Rng) -> Array:
+    """Exchange left and right of noisy rotations, in place, for 3 to 11 frames at a time."""
     if body.pairs:
         left, right = np.array(body.pairs).T
         for start in starts(len(noisy), 1 / 120, rng):
@@ -190,6 +194,13 @@ def _turned(body: Body, level: float, rng: Rng, joints: Sequence[int], degrees: 
 
 def _runs(body: Body, level: float, rng: Rng) -> Array:
     return _turned(body, level, rng, range(body.rotations.shape[1]), (15.0, 60.0))
+
+
+def _estimates(body: Body, level: float, rng: Rng) -> Array:
+    noisy = _exchanged(body, _runs(body, level, rng), rng)
+    for start in starts(len(noisy), 1 / 60, rng):
+        noisy[start : start + int(rng.integers(2, 5))] = noisy[start]
+    return noisy
 
 
 def _flips(body: Body, level: float, rng: Rng) -> Array:
@@ -248,6 +259,11 @@ SINGLE: tuple[Kind, ...] = (
     ),
     Kind("swaps", "white; in one of 120 frames left and right are exchanged for 3 to 11 frames", _swapped),
     Kind("runs", "ar8; runs of 2 to 9 frames turned by 15° to 60°, in a joint one in 200 frames", _runs),
+    Kind(
+        "estimates",
+        "runs; left and right exchanged as in swaps; in one of 60 frames the pose stays for 2 to 4 frames",
+        _estimates,
+    ),
     Kind("flips", "ar8; runs of 2 to 9 frames in which the root is turned by 100° to 170°", _flips),
     Kind("steps", "Euler angles rounded to 1°", _steps, levelled=False),
     Kind(

@@ -3,7 +3,7 @@
 Jerk that is left, the slow path, excursions from it, and measurements that were withheld.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,6 +19,7 @@ from quatfilt.filters.kalman import kalman
 from quatfilt.formats.files import read_motion
 from quatfilt.motion.metrics import jerk
 from quatfilt.motion.motion import Motion
+from quatfilt.presets import PRESETS
 from quatfilt.rotations.quaternion import geodesic_distance
 
 FOLDER = "trackers"
@@ -54,8 +55,8 @@ class Take:
         The recording and the result.
     flips : int
         Turns of the root by more than 90° in a frame.
-    jerk_left, jerk_left_video, jerk_left_kalman : float
-        Jerk of the result over that of the recording: the automatic method, the preset "video", and `kalman`.
+    jerk_left, jerk_left_kalman : float
+        Jerk of the result over that of the recording: the automatic method and `kalman`.
     slow_moved : float, degrees
         Mean angle between the slow paths.
     masked : float
@@ -68,6 +69,8 @@ class Take:
         Mean error of withheld measurements, capped at 30°: the automatic method, and geodesics between neighbours.
     speed, acceleration : float
         99th percentiles in the result, rad/s and rad/s².
+    presets : mapping
+        By name of the preset: jerk_left, slow_moved, peaks_kept and change of its result.
     """
 
     name: str
@@ -76,7 +79,6 @@ class Take:
     after: Motion
     flips: int
     jerk_left: float
-    jerk_left_video: float
     jerk_left_kalman: float
     slow_moved: float
     masked: float
@@ -86,6 +88,7 @@ class Take:
     withheld_plain: float
     speed: float
     acceleration: float
+    presets: Mapping[str, Mapping[str, float]]
 
 
 def run(data: Path, *, progress: Callable[[int, int], None] | None = None) -> list[Take]:
@@ -118,33 +121,46 @@ def measured(name: str, before: Motion) -> Take:
     q, fps = before.rotations, before.fps
     after = denoise(before)
     source = sampling.recognised(q, fps)
-    paths = [slow_path(x, SLOW * fps) for x in (q, after.rotations)]
-    clear = paths[0][1] & paths[1][1]
+    slow = slow_path(q, SLOW * fps)
+    own, masked = compared(q, after.rotations, slow, fps)
     held, plain = withheld(q, source, fps)
     speeds = geodesic_distance(after.rotations[:-1], after.rotations[1:]) * fps
-    rough = float(jerk(q, fps=fps))
-
-    def left(result: Array) -> float:
-        return float(jerk(result, fps=fps)) / rough if rough > 0 else 1.0
-
     return Take(
         name=name,
         source=source.says(fps),
         before=before,
         after=after,
         flips=sampling.flips(q),
-        jerk_left=left(after.rotations),
-        jerk_left_video=left(denoise(before, preset="video").rotations),
-        jerk_left_kalman=left(kalman(q, fps=fps)),
-        slow_moved=_mean(np.degrees(geodesic_distance(paths[0][0], paths[1][0]))[clear]),
-        masked=1 - float(clear.mean()),
-        peaks_kept=peaks_kept(q, after.rotations, paths[0][0], clear),
-        change=_mean(np.degrees(geodesic_distance(q, after.rotations))),
+        **own,
+        jerk_left_kalman=jerk_left(q, kalman(q, fps=fps), fps),
+        masked=masked,
         withheld=held,
         withheld_plain=plain,
         speed=float(np.percentile(speeds, 99)),
         acceleration=float(np.percentile(accelerations(after.rotations, fps), 99)),
+        presets={
+            preset: compared(q, denoise(before, preset=preset).rotations, slow, fps)[0] for preset in PRESETS
+        },
     )
+
+
+def compared(q: Array, result: Array, slow: tuple[Array, Mask], fps: float) -> tuple[dict[str, float], float]:
+    """Return the measures that need a recording, its slow path and a result alone, and the share of samples without a slow path."""
+    path, defined = slow_path(result, SLOW * fps)
+    clear = slow[1] & defined
+    measures = {
+        "jerk_left": jerk_left(q, result, fps),
+        "slow_moved": _mean(np.degrees(geodesic_distance(slow[0], path))[clear]),
+        "peaks_kept": peaks_kept(q, result, slow[0], clear),
+        "change": _mean(np.degrees(geodesic_distance(q, result))),
+    }
+    return measures, 1 - float(clear.mean())
+
+
+def jerk_left(before: Array, after: Array, fps: float) -> float:
+    """Return the jerk of a result over that of the recording; 1 for recordings without any."""
+    rough = float(jerk(before, fps=fps))
+    return float(jerk(after, fps=fps)) / rough if rough > 0 else 1.0
 
 
 def slow_path(q: Array, sigma: float) -> tuple[Array, Mask]:
