@@ -4,12 +4,12 @@ import clips
 import numpy as np
 import pytest
 import quatfilt as qf
-from quatfilt.evaluation.clips import load, thinned
 import tolerances
 from drawn import dtypes, seeds
 from hypothesis import given
 from hypothesis import strategies as st
 from plugins.properties import examples
+from quatfilt.evaluation.clips import load, thinned
 from quatfilt.filters import despike
 
 RADIUS = 3
