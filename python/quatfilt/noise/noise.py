@@ -65,7 +65,8 @@ def noise_level(q: Motion | ArrayLike, *, scalar_first: bool = True) -> Array:
     if isinstance(q, Motion):
         if not scalar_first:
             raise TypeError("scalar_first applies to arrays only; a Motion has its own convention")
-        q, fps = q.rotations, q.fps
+        motion = q
+        q, fps = motion.rotations, motion.fps
     array = _validation.quaternions(q, "q", scalar_first=scalar_first)
     clip, _ = _validation.clip(array, "q")
     level = measure(clip, fps=fps).level.astype(clip.dtype)
