@@ -14,7 +14,7 @@ every_preset = pytest.mark.parametrize("name", PRESETS)
 
 OTHERS = {
     "butterworth": {"cutoff": 3.0},
-    "despike": {"threshold": 0.5, "smallest": 0.0},
+    "despike": {"radius": 3, "threshold": 0.5, "smallest": 0.0},
     "nonlocal_pose_means": {"boundary": "linear"},
     "smooth": {"strength": 2.0},
 }

@@ -174,6 +174,29 @@ def test_white_noise_is_smoothed_as_before(clean, dtype):
         )
 
 
+def test_weak_white_noise_is_noise_where_the_frame_rate_is_known(clean):
+    q = qf.add_gaussian_noise(clean, sigma=0.002, rng=3)
+    assert qf.noise_model(clean, fps=FPS).evidence == 0
+    assert qf.noise_model(q).evidence < 1
+    assert qf.noise_model(q, fps=FPS).evidence == 1
+    np.testing.assert_array_equal(
+        qf.smooth(q, joints="together", noise="measured", fps=FPS), qf.smooth(q, joints="together")
+    )
+
+
+def test_bursts_of_noise_are_noise_where_the_rest_is_not(clean):
+    q = qf.add_gaussian_noise(clean[::4], sigma=0.004, rng=5)
+    vectors = np.random.default_rng(4).normal(0, SIGMA, (40, clean.shape[1], 3))
+    q[100:140] = qf.multiply(q[100:140], qf.exp(vectors / 2))
+    model = qf.noise_model(q, fps=FPS / 4)
+    assert model.evidence == 1
+    along = model.along_time
+    assert np.median(along[105:135]) > 4 * np.median(along[150:])
+    assert (
+        psnr(clean[::4], qf.smooth(q, noise="measured", fps=FPS / 4)) > psnr(clean[::4], qf.kalman(q)) - 0.5
+    )
+
+
 @pytest.mark.parametrize(("kind", "gain"), [("ar0.5", 3), ("ar0.7", 2), ("unsteady", 2), ("axis", 2)])
 def test_other_noise_is_smoothed_better_than_by_a_low_pass(clean, kind, gain):
     q, _ = noisy(clean, kind)
@@ -215,3 +238,23 @@ def test_rotations_of_euler_angles_in_steps_are_accepted(clean):
     q = steps.reshape(clean.shape)
     assert np.isfinite(qf.denoise(q, fps=FPS)).all()
     assert np.isfinite(qf.noise_level(q)).all()
+
+
+# ---- filters that ask for the level
+
+
+def test_white_noise_has_the_level_of_noise_level_in_every_filter(clean):
+    q, _ = noisy(clean, "white")
+    level = qf.noise_level(q)
+    np.testing.assert_array_equal(qf.kalman_noises(q, fps=FPS)[1], level)
+    np.testing.assert_array_equal(
+        qf.nonlocal_pose_means(q), qf.nonlocal_pose_means(q, bandwidth=np.sqrt(np.mean(level**2)))
+    )
+
+
+@pytest.mark.parametrize(("kind", "gain"), [("ar0.7", 1.0), ("unsteady", 1.0)])
+def test_nonlocal_pose_means_takes_the_measured_level(clean, kind, gain):
+    q, vectors = noisy(clean, kind)
+    truth = np.sqrt(np.mean(vectors**2))
+    assert 0.85 < np.median(qf.kalman_noises(q, fps=FPS)[1]) / truth < 1.15
+    assert psnr(clean, qf.nonlocal_pose_means(q)) > psnr(clean, q) + gain

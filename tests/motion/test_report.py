@@ -256,3 +256,16 @@ def test_what_held_the_feet_is_told(motions):
         )
     with pytest.raises(TypeError, match="filtered: expected None with rotations"):
         qf.report(noisy.rotations, kept.rotations, filtered=filtered)
+
+
+def test_the_noise_before_is_named():
+    truth = walk(seconds=4)
+    vectors = np.random.default_rng(3).normal(0, 0.015, (*truth.rotations.shape[:2], 3))
+    vectors[:240] *= 4
+    noisy = truth.replace(rotations=qf.multiply(truth.rotations, qf.exp(vectors)))
+    result = qf.report(noisy, truth)
+    assert "colour: white" in result.noise
+    assert "along time: unsteady" in result.noise
+    assert "repeats: none" in result.noise
+    assert result.as_dict()["noise"] == result.noise
+    assert f"Noise before: {result.noise}." in str(result)

@@ -9,6 +9,7 @@ from quatfilt import _validation
 from quatfilt._backend import ops
 from quatfilt._typing import Array
 from quatfilt.filters import _paths, _spans
+from quatfilt.noise._measure import measure
 
 Noise = float | ArrayLike | Literal["auto"]
 
@@ -61,7 +62,7 @@ def kalman(
         How much the angular velocity changes by chance: by a deviation of ``process_noise·√t`` in `t` seconds. 0: it is
         constant. "auto" chooses it for each joint from the clip; see Notes.
     measurement_noise : float or array_like (joints,), radians, or "auto", default "auto"
-        Deviation of a sample per component of the rotation vector, above 0. "auto" is `noise_level`. With
+        Deviation of a sample per component of the rotation vector, above 0. "auto" is the level of `noise_model`. With
         ``process_noise="auto"`` it hardly matters: what matters is the ratio of the two.
     smooth : bool, default True
         Whether later frames count. False is the forward filter.
@@ -244,7 +245,7 @@ def _noises(
         )
         measurement = np.full(joints, _LEAST_NOISE)
         if not clip.unchanged:
-            measurement = np.maximum(ops().noise_level(clip.observed).astype(np.float64), _LEAST_NOISE)
+            measurement = np.maximum(measure(clip.observed, fps=fps).level, _LEAST_NOISE)
     else:
         measurement = _validation.per_joint(measurement_noise, "measurement_noise", joints, above=0)
     measurement = np.clip(measurement, *EXTREMES)

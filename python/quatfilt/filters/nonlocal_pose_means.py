@@ -11,6 +11,7 @@ from quatfilt._backend import ops
 from quatfilt._typing import Array
 from quatfilt.filters import _spans
 from quatfilt.filters.boundary import BOUNDARIES, Boundary
+from quatfilt.noise._measure import measure
 
 Chart = Literal["mean", "identity", "local"]
 Weights = Literal["pose", "joint"]
@@ -85,7 +86,7 @@ def nonlocal_pose_means(
     patch_radius : int, frames, default 5
         Radius of a patch, from 0 to 100,000.
     bandwidth : float or array_like (joints,), radians of rotation per coordinate, or "auto", default "auto"
-        How unlike patches may be. Twice the paper's σ. "auto" takes the noise that `noise_level` estimates, its root
+        How unlike patches may be. Twice the paper's σ. "auto" takes the noise that `noise_model` measures, its root
         mean square over the joints; for ``weights="joint"`` 1.2 times each joint's own.
     distance : {"mean", "sum"}, default "mean"
         ``"sum"`` is the printed equation, whose bandwidth depends on the patch and on the number of joints.
@@ -202,7 +203,7 @@ def with_translation(
     )
     others, lengths = _validation.library(window.pop("library"), clip.rotations, scalar_first=scalar_first)
     options = _checked(bandwidth=bandwidth, **window, borrows=others is not None)
-    bandwidths = _joint_bandwidths(clip, bandwidth, window["weights"])
+    bandwidths = _joint_bandwidths(clip, bandwidth, window["weights"], fps)
     moved = None if translation is None else translation.astype(clip.rotations.dtype)
 
     def run(rotations: Array, trust: Array | None, span: _spans.Span) -> Array:
@@ -277,7 +278,7 @@ def _sample(clip: _spans.Clip) -> Array:
 
 
 def _joint_bandwidths(
-    clip: _spans.Clip, bandwidth: float | ArrayLike | Literal["auto"], weights: Weights
+    clip: _spans.Clip, bandwidth: float | ArrayLike | Literal["auto"], weights: Weights, fps: float
 ) -> NDArray[np.float64]:
     """Return the bandwidth of each joint."""
     joints = clip.rotations.shape[1]
@@ -285,7 +286,7 @@ def _joint_bandwidths(
         return _validation.per_joint(bandwidth, "bandwidth", joints, above=0)
     if clip.unchanged:
         return np.full(joints, _LEAST_BANDWIDTH)
-    noise: NDArray[np.float64] = ops().noise_level(_sample(clip)).astype(np.float64)
+    noise = measure(_sample(clip), fps=fps).level
     if weights == "pose":
         noise = np.full(joints, np.sqrt(np.mean(noise**2)))
     return np.maximum(_NOISE_TO_BANDWIDTH[weights] * noise, _LEAST_BANDWIDTH)

@@ -83,7 +83,7 @@ def smooth(
     max_gap : float or None, seconds, default None
         The longest gap that is filled; None for any. Longer ones stay missing, and their sides are smoothed apart.
     fps : float, hertz, default 1.0
-        Frame rate, for `max_gap`; without it `max_gap` counts frames.
+        Frame rate, for `max_gap`, and for freezes and evidence with ``noise="measured"``; without it `max_gap` counts frames.
     scalar_first : bool, default True
         Whether quaternions are ``(w, x, y, z)``; False for SciPy's ``(x, y, z, w)``.
 
@@ -164,7 +164,7 @@ def with_translation(
     position_noise = 0.0
     if not clip.unchanged:
         if measured:
-            model = measure(clip.observed)
+            model = measure(clip.observed, fps=fps)
             levels = scale * assumed_level(model)
             share *= learned_share(model)
         else:

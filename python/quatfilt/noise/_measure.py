@@ -27,8 +27,11 @@ _STILL_QUIET = 2.0
 _DOUBTFUL, _CERTAIN = 0.33, 0.5
 """Level over speed, see ``noise_over_motion``: below the first it may be motion, from the second on it is noise."""
 
-_LEAST_COLOUR = 0.12
-"""Smaller coefficients are no colour."""
+_SLOW_RATE, _SHORTER_FRAMES = 60.0, 0.75
+"""Hertz, exponent: up to this frame rate clean motion leaves as much as that, beyond it a power of the frame's length: 0.2 at 120 hertz."""
+
+_LEAST_COLOUR = 0.2
+"""Smaller coefficients are no colour: beside weak noise motion reads as up to 0.17, and whitening less gains nothing."""
 
 _ROUND = 2.0
 """Largest ratio of the deviations along two axes of noise that counts as alike in all directions."""
@@ -84,8 +87,8 @@ class Measured:
         return self.evidence <= 0.5 or not noisy.any() or float((ratio > _ROUND).mean()) <= _UNROUND_SHARE
 
 
-def measure(q: Array) -> Measured:
-    """Measure the noise of rotations ``(frames, joints, 4)``, with NaN or zeros where samples are missing."""
+def measure(q: Array, *, fps: float = 1.0) -> Measured:
+    """Measure the noise of rotations ``(frames, joints, 4)``, with NaN or zeros where samples are missing; 1 is an unknown frame rate."""
     repeated = ops().find_repeats(q)
     known = np.isfinite(q).all(axis=-1) & (q != 0).any(axis=-1)
     moving = (known & ~repeated).sum(axis=0) > 1
@@ -100,12 +103,21 @@ def measure(q: Array) -> Measured:
     white = ops().noise_level(_compacted(new, repeated[fresh]))
     variance = ops().noise_along_time(new, white)
     quiet = loud = white.astype(np.float64)
+    part = sample = _sample(new)
+    ratio = 0.0
     if (variance != 1).any():
         quiet = _level_where(new, variance <= _STILL_QUIET * np.quantile(variance, _QUIET), variance, quiet)
-        loud = _level_where(new, variance >= np.quantile(variance, _LOUD) / _STILL_QUIET, variance, quiet)
-    sample = _sample(new)
+        noisy = variance >= np.quantile(variance, _LOUD) / _STILL_QUIET
+        loud = _level_where(new, noisy, variance, quiet)
+        variance, loud = _stretched(variance, quiet, loud, noisy)
+        part = _only(new, noisy)
+        ratio = ops().noise_over_motion(_sample(part), ops().noise_level(part))
     over_time = _over_time(loud, variance).astype(q.dtype)
-    evidence = _evidence(ops().noise_over_motion(sample, over_time))
+    evidence = _evidence(ops().noise_over_motion(sample, over_time), fps)
+    if _evidence(ratio, fps) > evidence:
+        # Where noise is larger than motion for a while, it is noise, whatever the rest of the clip is.
+        evidence = _evidence(ratio, fps)
+        sample = _sample(part)
     if evidence == 0:
         # Impacts and spins come and go too.
         variance = np.ones(len(new))
@@ -145,10 +157,32 @@ def _level_where(
     q: Array, here: Mask, variance: NDArray[np.float64], otherwise: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return the level where the variance is 1, measured on some of the frames."""
+    found = ops().noise_level(_only(q, here)).astype(np.float64) / math.sqrt(variance[here].mean())
+    return np.where(found > 0, found, otherwise)
+
+
+def _stretched(
+    variance: NDArray[np.float64], quiet: NDArray[np.float64], loud: NDArray[np.float64], noisy: Mask
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Stretch the logarithm of the variance such that noisy frames have the level that was measured in them, and quiet ones theirs.
+
+    Beside fast motion `noise_along_time` does not tell how quiet the quiet part is, and levels differ where the variance is 1.
+    """
+    both = (quiet > 0) & (loud > 0)
+    if not both.any():
+        return variance, loud
+    more = 2 * max(float(np.median(np.log(loud[both] / quiet[both]))), 0.0)
+    most = float(np.log(variance[noisy]).mean())
+    if most <= 0:
+        return variance, loud
+    return np.asarray(variance ** (1 + more / most)), loud * math.exp(-more / 2)
+
+
+def _only(q: Array, here: Mask) -> Array:
+    """Return rotations that are missing at all other frames."""
     part = q.copy()
     part[~here] = np.nan
-    found = ops().noise_level(part).astype(np.float64) / math.sqrt(variance[here].mean())
-    return np.where(found > 0, found, otherwise)
+    return part
 
 
 def _over_time(level: NDArray[np.float64], variance: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -156,10 +190,11 @@ def _over_time(level: NDArray[np.float64], variance: NDArray[np.float64]) -> NDA
     return level * math.sqrt(variance.mean()) if len(variance) else level
 
 
-def _evidence(ratio: float) -> float:
-    if ratio <= _DOUBTFUL:
+def _evidence(ratio: float, fps: float) -> float:
+    doubtful = _DOUBTFUL * min(_SLOW_RATE / fps, 1.0) ** _SHORTER_FRAMES
+    if ratio <= doubtful:
         return 0.0
-    return min(math.log(ratio / _DOUBTFUL) / math.log(_CERTAIN / _DOUBTFUL), 1.0)
+    return min(math.log(ratio / doubtful) / math.log(_CERTAIN / _DOUBTFUL), 1.0)
 
 
 def _compacted(new: Array, repeated: Mask) -> Array:

@@ -107,7 +107,7 @@ def noise_model(q: Motion | ArrayLike, *, fps: float = 1.0, scalar_first: bool =
     q : Motion or array_like, shape (frames, joints, 4) or (frames, 4)
         Unit quaternions along time. Missing samples, NaN or four zeros, are left out.
     fps : float, hertz, default 1.0
-        Frame rate, for spikes; a motion knows its own.
+        Frame rate, for spikes and evidence; a motion knows its own.
     scalar_first : bool, default True
         Whether quaternions are ``(w, x, y, z)``; False for SciPy's ``(x, y, z, w)``.
 
@@ -153,7 +153,7 @@ def noise_model(q: Motion | ArrayLike, *, fps: float = 1.0, scalar_first: bool =
     array = _validation.quaternions(q, "q", scalar_first=scalar_first)
     clip, _ = _validation.clip(array, "q")
     rate = _validation.number(fps, "fps", above=0)
-    found = measure(clip)
+    found = measure(clip, fps=rate)
     deviation = np.sqrt(found.variance)
     mean = float(np.sqrt(np.mean(found.variance))) if len(deviation) else 1.0
     return NoiseModel(
@@ -162,7 +162,7 @@ def noise_model(q: Motion | ArrayLike, *, fps: float = 1.0, scalar_first: bool =
         found.colour,
         deviation / mean,
         found.repeated,
-        spikes(clip, fps=rate),
+        spikes(clip, radius="auto", fps=rate),
         found.evidence,
         rate,
     )

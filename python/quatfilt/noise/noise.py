@@ -61,13 +61,15 @@ def noise_level(q: Motion | ArrayLike, *, scalar_first: bool = True) -> Array:
     >>> round(float(qf.noise_level(noisy)), 3)
     0.02
     """
+    fps = 1.0
     if isinstance(q, Motion):
         if not scalar_first:
             raise TypeError("scalar_first applies to arrays only; a Motion has its own convention")
-        q = q.rotations
+        motion = q
+        q, fps = motion.rotations, motion.fps
     array = _validation.quaternions(q, "q", scalar_first=scalar_first)
     clip, _ = _validation.clip(array, "q")
-    level = measure(clip).level.astype(clip.dtype)
+    level = measure(clip, fps=fps).level.astype(clip.dtype)
     return np.reshape(level, array.shape[1:-1])[()]
 
 

@@ -20,7 +20,7 @@ SHORTEST = 84
 QUIET = 0.25
 """Quantile over time of a joint's local variance that stands for its quiet part."""
 
-OF_MOTION = 0.7
+OF_MOTION = 0.5
 """Share of the local speed, in frames, that motion may leave in the differences: so much is no noise."""
 
 LEAST_QUIET = 0.3
@@ -40,7 +40,7 @@ def noise_along_time(q: Reals, level: Reals) -> Reals:
     For each joint `m_t` is the mean over 21 frames of `|Δ⁶|² / (3 C(12, 6))`, a local variance, and `s_t` that of the squared
     local speed. With `b` for the larger of the 25 % quantile of `m_t` and `(0.3)² mean s_t`,
 
-        `e_t = max(m_t − (0.7)² s_t, 0) / b`,    `v_t = max(median over the joints of e_t, 1)`.
+        `e_t = max(m_t − (0.5)² s_t, 0) / b`,    `v_t = max(median over the joints of e_t, 1)`.
 
     Fast motion raises `m` and `s` together and is taken out; noise that a tracker adds to all joints is not. For few joints `v` is
     drawn towards 1: `v ← (42 J v + 10) / (42 J + 10)`. Where the deviation `d` of `ln v` over the clip is small, noise is steady: `v`

@@ -15,6 +15,7 @@ from quatfilt.motion.metrics._samples import Values
 from quatfilt.motion.metrics.speed import jerks, peaks_kept, steps
 from quatfilt.motion.motion import Motion
 from quatfilt.motion.report.sides import Side
+from quatfilt.noise.model import noise_model
 from quatfilt.noise.noise import noise_level
 
 
@@ -219,6 +220,12 @@ def _noise(q: Values) -> Column:
     return noise, float(np.sqrt(np.mean(noise**2))) if len(noise) else float("nan")
 
 
+def model(before: Side) -> str:
+    """Return in words what was measured of the noise."""
+    found = noise_model(before.rotations, fps=1.0 if before.fps is None else before.fps)
+    return "; ".join(f"{name}: {value}" for name, value in found.describe())
+
+
 def _peak(reference: Values, other: Values) -> Column:
     each = peaks_kept(reference, other)
     return each, float(_samples.mean(each))
@@ -252,4 +259,4 @@ def foot_scale(before: Side) -> float:
     return 1.0 if before.motion is None else metrics.foot_scale(before.motion)
 
 
-__all__ = ["Foot", "Joint", "Placed", "feet", "foot_scale", "joints", "placed"]
+__all__ = ["Foot", "Joint", "Placed", "feet", "foot_scale", "joints", "model", "placed"]

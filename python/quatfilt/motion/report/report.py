@@ -40,6 +40,8 @@ class Report:
         What was compared, for the curves of the picture.
     source : str
         What is known about the clip's source: held, repeated, frozen or interpolated frames; empty if every frame was measured.
+    noise : str
+        What was measured of the noise before, see `noise_model`: level, colour, along time, repeats and spikes.
     foot_scale : float
         Factor by which lengths were multiplied for the slide of the feet, see `metrics.foot_scale`; 1 where the unit is known.
     placed : Placed or None
@@ -65,6 +67,7 @@ class Report:
     feet: tuple[Foot, ...]
     clips: tuple[Side, ...] = ()
     source: str = ""
+    noise: str = ""
     foot_scale: float = 1.0
     placed: Placed | None = None
 
@@ -80,12 +83,13 @@ class Report:
         Returns
         -------
         dict
-            ``frames``, ``fps``, ``source``, ``overall``, ``joints``, ``feet``, ``foot_scale`` and ``placed``.
+            ``frames``, ``fps``, ``source``, ``noise``, ``overall``, ``joints``, ``feet``, ``foot_scale`` and ``placed``.
         """
         return {
             "frames": self.frames,
             "fps": self.fps,
             "source": self.source,
+            "noise": self.noise,
             "overall": _finite(asdict(self.overall)),
             "joints": [_finite(asdict(joint)) for joint in self.joints],
             "feet": [_finite(asdict(foot)) for foot in self.feet],
@@ -192,6 +196,7 @@ def report(
         feet=measured.feet(*clips),
         clips=clips,
         source=sampling.recognised(clips[0].rotations, 1.0 if rate is None else rate).says(rate),
+        noise=measured.model(clips[0]),
         foot_scale=measured.foot_scale(clips[0]),
         placed=_placed(filtered, after),
     )

@@ -46,8 +46,10 @@ def plain(report: "Report") -> str:
 
 
 def notes(report: "Report") -> list[str]:
-    """Return sentences about how the feet were measured."""
-    result = [] if report.placed is None else [turned(report.placed)]
+    """Return sentences about the noise before, and about how the feet were measured."""
+    result = [f"Noise before: {report.noise}."] if report.noise else []
+    if report.placed is not None:
+        result.append(turned(report.placed))
     if report.feet and report.foot_scale != 1:
         result.append(scaled(report.foot_scale))
     return result

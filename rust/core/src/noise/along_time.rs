@@ -25,7 +25,7 @@ const SHORTEST: usize = 84;
 const QUARTERS: usize = 4;
 
 /// Share of the local speed, in frames, that motion may leave in the differences: so much is no noise.
-const OF_MOTION: f64 = 0.7;
+const OF_MOTION: f64 = 0.5;
 
 /// Share of the mean speed below which a quiet part is not told apart from a quieter one.
 const LEAST_QUIET: f64 = 0.3;
