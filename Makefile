@@ -1,10 +1,10 @@
-# The only door to this repository: `make help` lists the rooms. Every target does its own set-up.
+# Entry point of the repository: `make help` lists the targets. Every target does its own set-up.
 #
 #   make PYTHON=python3.12 test    another Python for the virtual environment
 #   make test PYTEST="-k mean -x"  arguments for pytest
 #   make test JOBS=1               how many tests run at the same time
 #   make bench BENCH="rotations"   arguments for the benchmarks
-#   make test-properties SEEDS=20  from how many seeds examples are drawn
+#   make test-properties SEEDS=20  number of seeds of the property tests
 
 PYTHON ?= python3
 VENV ?= .venv
@@ -30,12 +30,12 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 CRATES := -p quatfilt-core -p quatfilt-formats
 RUST_SOURCES := Cargo.toml Cargo.lock $(shell find rust -name '*.rs' -o -name Cargo.toml)
 
-.PHONY: help  ## Show what there is
+.PHONY: help  ## List the targets
 help:
 	@grep -E '^\.PHONY: .*  ## ' $(firstword $(MAKEFILE_LIST)) \
 		| awk 'BEGIN {FS = "^\\.PHONY: |  ## "} {printf "  make %-18s %s\n", $$2, $$3}'
 
-# ---- set-up: stamps in the virtual environment say what was done
+# ---- set-up: stamp files in the virtual environment mark the steps that are done
 
 .PHONY: prerequisites
 prerequisites:
@@ -79,7 +79,7 @@ test-rust: prerequisites
 test-python: build $(VENV)/.group-test
 	$(BIN)/python -m pytest -n $(JOBS) --dist worksteal tests python/quatfilt $(PYTEST)
 
-.PHONY: test-properties  ## Run the tests that draw examples, from other seeds (arguments: SEEDS=20 PYTEST="...")
+.PHONY: test-properties  ## Run the property tests with SEEDS other random seeds (arguments: SEEDS=20 PYTEST="...")
 test-properties: build $(VENV)/.group-test
 	@failed=; for seed in $$(seq $(SEEDS)); do echo "== seed $$seed"; \
 		$(BIN)/python -m pytest -n $(JOBS) --dist worksteal tests -m hypothesis --quiet --hypothesis-seed=$$seed $(PYTEST) || failed="$$failed $$seed"; \
@@ -109,7 +109,7 @@ format: $(VENV)/.group-lint
 	$(BIN)/ruff check --fix --exit-zero --quiet
 	$(BIN)/ruff format
 
-.PHONY: bench  ## Time whole calls beside other packages (arguments: BENCH="rotations -o docs/results")
+.PHONY: bench  ## Time whole calls against other packages (arguments: BENCH="rotations -o docs/results")
 bench: build $(VENV)/.group-bench
 	$(BIN)/python benches/python $(BENCH)
 
@@ -117,23 +117,29 @@ bench: build $(VENV)/.group-bench
 bench-rust: prerequisites
 	cargo bench --locked -p quatfilt-benches
 
-.PHONY: bench-test  ## Prove that the criterion benchmarks run, without timing them
+.PHONY: bench-test  ## Check that the criterion benchmarks run, without timing them
 bench-test: prerequisites
 	cargo test --locked -p quatfilt-benches --benches
 
-.PHONY: bench-instructions  ## Count the instructions of kernels with valgrind (arguments: BENCH="log-f32")
+.PHONY: bench-instructions  ## Count the instructions of the kernels with valgrind (arguments: BENCH="log-f32")
 bench-instructions: build
 	cargo build --release --locked -p quatfilt-benches --bin instructions
 	$(BIN)/python benches/python/instructions.py target/release/instructions $(BENCH)
 
-.PHONY: train-gains  ## Train the network of the last step of automatic smoothing on QUATFILT_DATA (arguments: TRAIN="--crops 10")
+.PHONY: train-gains  ## Train the optional network of automatic smoothing on QUATFILT_DATA (arguments: TRAIN="--crops 10")
 train-gains: build
 	$(BIN)/python training/train_gains.py $(TRAIN)
 
-.PHONY: docs  ## Write the reference of the Rust crates to target/doc and of the Python package to out/docs
+.PHONY: docs  ## Build the API reference: Rust crates in target/doc, Python package in out/docs
 docs: build $(VENV)/.group-docs
 	RUSTDOCFLAGS='-D warnings' cargo doc --locked --no-deps $(CRATES)
 	$(BIN)/pdoc --docformat numpy --output-directory out/docs quatfilt
+
+.PHONY: pictures  ## Draw the pictures of the documentation again
+pictures: build
+	$(BIN)/python -m quatfilt.evaluation.picture docs/images/denoise.png
+	$(BIN)/python docs/images/filters.py
+	$(BIN)/python docs/images/pages.py
 
 .PHONY: dist  ## Build the source distribution and a wheel into dist
 dist: $(VENV)/.group-build
@@ -141,11 +147,11 @@ dist: $(VENV)/.group-build
 	$(BIN)/maturin sdist --out dist
 	$(BIN)/maturin build --release --locked --out dist
 
-.PHONY: smoke  ## Install the source distribution into a clean environment and try it
+.PHONY: smoke  ## Install the source distribution into a clean environment and run it
 smoke: $(VENV)/.group-build
 	bash .ci/smoke $(BIN)
 
-.PHONY: ci  ## Do what continuous integration does
+.PHONY: ci  ## Run the checks of continuous integration
 ci:
 	bash .ci/run
 

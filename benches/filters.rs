@@ -119,7 +119,7 @@ fn trusted<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error
     let confidences = [T::ZERO, T::HALF, T::ONE];
     let trust: Vec<T> = (0..frames * joints).map(|i| confidences[(i % 10).min(2)]).collect();
     timer.threads::<T, _, _>("filters/confidence", size, || {
-        confidence::trusted(clip, &trust, ClipMut::new(&mut out, frames, joints)?)
+        confidence::pulled_by_confidence(clip, &trust, ClipMut::new(&mut out, frames, joints)?)
     })
 }
 

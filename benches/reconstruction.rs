@@ -10,7 +10,7 @@ use quatfilt_core::reconstruction::local_models::{Model, Neighbors, Options, pre
 use quatfilt_core::reconstruction::solver::Targets;
 use quatfilt_core::reconstruction::tracker::{self, Poses, Tables, Tracker};
 use quatfilt_core::search::poses::graph::{self, Apart, Graph};
-use quatfilt_core::search::poses::walk::Trust;
+use quatfilt_core::search::poses::walk::Fallback;
 use quatfilt_core::search::poses::{Index, Segments};
 use quatfilt_core::{ClipView, Error, Real};
 use std::sync::Arc;
@@ -100,7 +100,7 @@ fn tracker(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
     let mut places = vec![0.0; count * 3 * joints];
     let short: Vec<f32> = offsets.iter().map(|&x| Real::from_f64(x)).collect();
     forward_kinematics(clip, &translation, Tree { parents: &parents, offsets: &short }, &mut places)?;
-    let trails: Vec<f32> = places
+    let trajectories: Vec<f32> = places
         .chunks_exact(3 * joints)
         .flat_map(|pose| POINTS.iter().flat_map(|&point| pose[3 * point..3 * point + 3].to_vec()))
         .collect();
@@ -116,7 +116,7 @@ fn tracker(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
             rotations: &rotations,
             heading: &heading,
             translation: &translation,
-            trails: &trails,
+            trajectories: &trajectories,
             starts: &borders,
             features: &features,
             mean_rotations: &means,
@@ -130,7 +130,7 @@ fn tracker(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
             frame = (frame + 1) % (2 * count);
             let at = frame.min(2 * count - 1 - frame) * 3 * POINTS.len();
             let positions: Vec<f64> =
-                trails[at..at + 3 * POINTS.len()].iter().map(|&x| f64::from(x)).collect();
+                trajectories[at..at + 3 * POINTS.len()].iter().map(|&x| f64::from(x)).collect();
             let seen = Targets {
                 positions: &positions,
                 position_deviations: &[1.0; POINTS.len()],
@@ -156,6 +156,6 @@ fn options() -> tracker::Options {
         model: Options { ridge: 0.1, share: 0.95, ..Options::default() },
         floor: [0.045, 2.5, 2.5, 0.5, 0.05],
         steps: 12,
-        trust: Trust { frames: 60, ratio: 1.5 },
+        fallback: Fallback { frames: 60, ratio: 1.5 },
     }
 }

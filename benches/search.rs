@@ -6,7 +6,7 @@ use quatfilt_core::parallel::Interrupt;
 use quatfilt_core::search::patch_neighbors::PatchNeighbors;
 use quatfilt_core::search::poses::along::Along;
 use quatfilt_core::search::poses::graph::{self, Apart, Graph, Neighbors};
-use quatfilt_core::search::poses::walk::{Database, Trust, Walk};
+use quatfilt_core::search::poses::walk::{Database, Fallback, Walk};
 use quatfilt_core::search::poses::{Index, Nearest, Segments, nearest};
 use quatfilt_core::{ClipView, Error, Real};
 
@@ -92,7 +92,7 @@ fn walk<T: Real>(timer: &mut Timer, size: (usize, usize)) -> Result<(), Error> {
     let database = Database { segments: &segments, index: &index, graph };
     let path = rows::<T>((100, joints), 1);
     let queries: Vec<&[T]> = path.windows(segments.width()).step_by(segments.dims()).collect();
-    let mut walk = Walk::new(COUNT, BREADTH, Trust { frames: usize::MAX, ratio: f64::INFINITY });
+    let mut walk = Walk::new(COUNT, BREADTH, Fallback { frames: usize::MAX, ratio: f64::INFINITY });
     let mut frame = 0;
     timer.levels::<T, _, _>("search/walk", size, || {
         frame = (frame + 1) % (2 * queries.len());

@@ -2,7 +2,7 @@
 
 import numpy as np
 from quatfilt._reference.motion.skeleton import rotate
-from quatfilt._reference.reconstruction.kinematics import WAY, Base, Body
+from quatfilt._reference.reconstruction.kinematics import ROOT, Base, Body
 from quatfilt._reference.reconstruction.solver import Prior, Targets
 from quatfilt._reference.rotations.quaternion import multiply
 
@@ -27,7 +27,7 @@ def base(rng, joints):
 
 def prior(rng, joints, axes=0, spread=0.3):
     """Draw what is expected."""
-    n = 3 * joints + WAY
+    n = 3 * joints + ROOT
     return Prior(
         spread * rng.normal(size=n),
         spread * rng.uniform(0.2, 1, n),

@@ -69,6 +69,7 @@ __all__ = [
     "predict_pose",
     "principal_frames",
     "principal_geodesics",
+    "pulled_by_confidence",
     "read_amc",
     "read_asf",
     "read_bvh",
@@ -93,7 +94,6 @@ __all__ = [
     "track",
     "track_stream",
     "tracker_noise",
-    "trusted",
     "undevelop",
     "unwhiten",
     "weighted_moving_mean",
@@ -128,7 +128,7 @@ def butterworth(
 ) -> tuple[Array, Array | None]: ...
 
 # filters/confidence
-def trusted(q: Array, confidence: Array, /) -> Array: ...
+def pulled_by_confidence(q: Array, confidence: Array, /) -> Array: ...
 
 # filters/despike
 def find_spikes(

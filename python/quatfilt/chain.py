@@ -1,4 +1,4 @@
-"""Filters one after the other: from names and options to steps, and from a noisy clip to a clean one."""
+"""Chains of filters: from names and options to steps, and from a noisy clip to a clean one."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -14,15 +14,15 @@ from quatfilt.methods import AUTO, FILTERS, METHODS, REQUIRED, Method
 from quatfilt.presets import BEST, PRESETS, Preset
 
 OF_THE_CLIP = ("confidence", "fps", "gaps", "max_gap", "scalar_first")
-"""Options that speak of the clip: they are given once, and no step has its own."""
+"""Options of the clip: given once for all steps."""
 
 SHARED = ("boundary", *OF_THE_CLIP)
-"""Options that mean the same everywhere: a plain keyword goes to every step that has them."""
+"""Options with the same meaning in all filters: a plain keyword goes to every step that has them."""
 
 
 @dataclass(frozen=True)
 class Step:
-    """A filter, and what was chosen for it."""
+    """A filter and the options chosen for it."""
 
     name: str
     chosen: dict[str, Any]
@@ -35,12 +35,12 @@ class Step:
 
     @property
     def settings(self) -> dict[str, Any]:
-        """All that the filter takes by name."""
+        """All keyword arguments of the filter."""
         return {**self.method.defaults, **self.chosen}
 
     @property
     def own(self) -> tuple[str, ...]:
-        """Options that this step can have for itself."""
+        """Options that can be set for this step alone."""
         return tuple(option for option in self.method.options if option not in OF_THE_CLIP)
 
 
@@ -54,7 +54,7 @@ def plan(method: str | Sequence[str], preset: str | None, options: Mapping[str, 
     preset : str or None
         Gives values to the steps that it has.
     options : mapping
-        Values that go before the preset's: of an option, or of a step as a mapping from its options.
+        Values that override the preset's: of an option, or of a step as a mapping of its options.
 
     Returns
     -------
@@ -68,14 +68,14 @@ def plan(method: str | Sequence[str], preset: str | None, options: Mapping[str, 
         a default is lacking.
     """
     steps = _steps(method, preset)
-    # What is said to one step goes before what is said to all.
+    # Options of one step override those of all.
     for option, value in sorted(options.items(), key=lambda item: isinstance(item[1], Mapping)):
         for step, chosen in _assigned(steps, option, value):
             step.chosen.update(chosen)
     for step in steps:
         for option, value in step.settings.items():
             if value is REQUIRED:
-                raise TypeError(f"{step.name}.{option}: expected a value, got none")
+                raise TypeError(f"{step.name} needs a value of {option}: pass {option}=…")
     return tuple(steps)
 
 
@@ -116,7 +116,7 @@ def _names(method: str | Sequence[str]) -> list[str]:
     if not isinstance(method, (list, tuple)):
         return [_validation.choice(method, "method", METHODS)]
     if not method:
-        raise ValueError("method: expected at least one name, got none")
+        raise ValueError("method: expected at least one filter, got an empty list")
     return [_validation.choice(name, f"method[{place}]", METHODS) for place, name in enumerate(method)]
 
 
@@ -130,23 +130,35 @@ def _assigned(steps: Sequence[Step], option: str, value: Any) -> list[tuple[Step
     """Return the steps that an option is for, and what each gets."""
     if option in FILTERS:
         if not isinstance(value, Mapping):
-            raise TypeError(f"{option}: expected a dict of options of this step, got {type(value).__name__}")
+            raise TypeError(_no_options(steps, option, value))
         own = [step for step in steps if step.name == option]
         if not own:
-            raise TypeError(f"{option}: expected one of the steps {_listed(steps)}, got another method")
+            raise TypeError(
+                f"{option}: the chain has no such filter, only {_listed(steps)}; add it to method"
+            )
         for name in value:
             if name not in own[0].own:
-                raise TypeError(
-                    f"{option}.{name}: expected an option of {option} ({', '.join(own[0].own)}), got this name"
-                )
+                raise TypeError(f"{option} has no option {name}; it has {', '.join(own[0].own)}")
         return [(step, value) for step in own]
     owners = [step for step in steps if option in step.method.options]
     if not owners:
         known = {step.name: f"{step.name} ({', '.join(step.method.options)})" for step in steps}
-        raise TypeError(f"{option}: expected an option of {' or '.join(known.values())}, got this name")
+        raise TypeError(
+            f"{option}: no filter of the chain has this option; it has {'; '.join(known.values())}"
+        )
     if option not in SHARED and len({step.name for step in owners}) > 1:
-        raise TypeError(f"{option}: expected an option of one step, got one of {_listed(owners)}")
+        raise TypeError(
+            f"{option}: {_listed(owners)} have this option; name the filter, as in {owners[0].name}={{{option!r}: …}}"
+        )
     return [(step, {option: value}) for step in owners]
+
+
+def _no_options(steps: Sequence[Step], name: str, value: Any) -> str:
+    """Say that the name of a filter has a value that is no dict; a filter may have an option of that name."""
+    for step in steps:
+        if name in step.own:
+            return f"{name}: this is the name of a filter; for the option of {step.name} pass {step.name}={{{name!r}: {value!r}}}"
+    return f"{name}: expected a dict of options of the filter {name}, got {type(value).__name__}"
 
 
 def _listed(steps: Sequence[Step]) -> str:
@@ -159,7 +171,7 @@ def run(
     """Run filters one after the other.
 
     Between steps, missing samples are missing again: each step fills them from what the steps before it made of their
-    neighbours, and trusts them no more than it would in a clip of its own.
+    neighbours, and gives them the same confidence as in a clip of its own.
 
     Parameters
     ----------
@@ -184,14 +196,14 @@ def run(
     if before:
         refuse_early(steps, rotations)
     for step in before:
-        # What is not to be there is refused by the first step.
+        # With gaps="raise" the first step refuses missing samples.
         between = "raise" if step.settings["gaps"] == "raise" else "keep"
         rotations, translation = _filtered(step, between, rotations, translation)
     return _filtered(last, last.settings["gaps"], rotations, translation)
 
 
 def refuse_early(steps: Sequence[Step], rotations: Array) -> None:
-    """Let every step look at its options, with a clip of no frames."""
+    """Check the options of every step with a clip of no frames."""
     clip, _ = _validation.clip(rotations)
     frames, joints = clip.shape[:2]
     for step in steps:
@@ -204,7 +216,7 @@ def refuse_early(steps: Sequence[Step], rotations: Array) -> None:
 
 
 def _settings(step: Step) -> dict[str, Any]:
-    """Return all that the filter takes by name, for rotations that are scalar first by now."""
+    """Return all keyword arguments of the filter, for rotations that are now scalar first."""
     settings = {**step.settings, "scalar_first": True}
     if settings.get("library") is not None and not step.settings["scalar_first"]:
         several = isinstance(settings["library"], (list, tuple))

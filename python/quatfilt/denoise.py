@@ -1,4 +1,4 @@
-"""The way from a noisy clip or motion to a clean one that the command line runs."""
+"""Cleaning of a motion or an array with one filter or a chain."""
 
 from collections.abc import Sequence
 from typing import Any, overload
@@ -47,24 +47,24 @@ def denoise(
     Parameters
     ----------
     motion_or_rotations : Motion or array_like, shape (frames, joints, 4) or (frames, 4)
-        What to clean. Missing samples are filled in, unless ``gaps=`` says otherwise.
+        The motion or the rotations to clean. Missing samples are filled, unless ``gaps=`` is given.
     method : str or list of str, default "auto"
-        The filter, or filters that run in this order. "auto" is `despike` and then ``smooth(joints="together")`` or, with a
+        The filter, or filters in their order. "auto" is `despike` and then ``smooth(joints="together", noise="measured")`` or, with a
         preset, the preset's chain.
     translation : bool, default True
-        Whether a motion's root translation is filtered too, by each step in its own way; gaps in it are then filled along
-        straight lines. A step with ``search_radius=None`` leaves it alone: a pose that comes back comes back elsewhere.
+        Whether the root's translation of a motion is filtered too, by each filter; its gaps are then filled along straight lines.
+        A filter with ``search_radius=None`` leaves it unchanged: a pose that repeats, repeats at another place.
     preset : {"optical", "inertial", "video"} or None, default None
         A prior for a kind of recording: steps of the automatic method with values, and how likely jitter is that moves as fast as
         limbs do; what else is given goes before it. Beside methods of the caller's, it gives values to the steps that it has.
     feet : {"keep", "lock"} or None, default "keep"
-        What happens to the feet of a motion after the last filter. ``"keep"``: while a foot stands on the ground it follows its path in the
-        input, without the noise; a filter alone makes feet slide. ``"lock"``: it stays at one point. None: nothing. Legs are found by the
-        names of the joints; without legs, and for arrays, ``"keep"`` does nothing.
+        Feet of a motion after the last filter. ``"keep"``: while a foot stands on the ground it follows its path in the input, without
+        the noise; a filter alone makes feet slide. ``"lock"``: it stays at one point. None: as filtered. Legs are found by the names of
+        the joints; without legs, and for arrays, ``"keep"`` does nothing.
     **options
-        Options of the filters. A plain keyword is for the one step that has it; `boundary`, `confidence`, `fps`, `gaps`,
-        `max_gap` and `scalar_first` are for all steps. The name of a step with a dict is for that step, as in
-        ``bilateral={"radius": 2}``. A motion knows its frame rate: ``fps`` need not be given.
+        Options of the filters. A plain keyword is for the one filter that has it; `boundary`, `confidence`, `fps`, `gaps`,
+        `max_gap` and `scalar_first` are for all filters. The name of a filter with a dict is for that filter, as in
+        ``bilateral={"radius": 2}``. A motion has its frame rate: omit ``fps``.
 
     Returns
     -------
@@ -74,14 +74,14 @@ def denoise(
     Raises
     ------
     ValueError, TypeError
-        If a method, a preset or an option is not what was stated; the message names it. Nothing is computed before all
-        steps have seen their options.
+        If a method, a preset or an option is invalid; the message names it. All options are checked before anything is
+        computed.
 
     See Also
     --------
     nonlocal_pose_means, bilateral, despike, orientation_filter : Filters, their options and their cost.
-    lock_feet : The step that holds feet on the ground, with options.
-    report : What a filter did.
+    lock_feet : Holds feet on the ground, with options.
+    report : Measures the effect of a filter.
 
     Notes
     -----
@@ -90,8 +90,8 @@ def denoise(
     by default where no person moves like that, with "video" in every stretch whose spectrum shows it, else never.
     ``fps`` tells what that needs.
 
-    A chain is its steps one after the other, each with ``gaps="keep"`` but for the last: missing samples are filled anew
-    by each step from neighbours that are the cleaner, and no step trusts what another one filled in.
+    In a chain each filter fills the gaps anew, from neighbours that the filters before it have cleaned; filled samples have
+    confidence 0.
 
     Examples
     --------
@@ -111,7 +111,7 @@ def denoise(
     if isinstance(motion_or_rotations, Motion):
         motion = motion_or_rotations
         if "scalar_first" in options:
-            raise TypeError("scalar_first: expected no such option with a Motion, got one")
+            raise TypeError("scalar_first applies to arrays only; a Motion has its own convention")
         steps = chain.plan(method, preset, {"fps": motion.fps, **options})
         rotations, moved = _run(
             method, preset, steps, motion.rotations, motion.translation if translation else None
@@ -120,7 +120,9 @@ def denoise(
         result = motion.replace(rotations=rotations, **changes)
         return result if placement is None else with_feet(motion, result, placement, translation=translation)
     if placement == "lock":
-        raise TypeError(f"feet: expected a Motion to lock its feet, got {type(motion_or_rotations).__name__}")
+        raise TypeError(
+            f"feet='lock' needs a Motion, which has a skeleton, got {type(motion_or_rotations).__name__}"
+        )
     steps = chain.plan(method, preset, options)
     if method == AUTO:
         chain.require_rate(steps, preset)

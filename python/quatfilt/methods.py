@@ -1,4 +1,4 @@
-"""What `denoise` can run: one entry for each filter."""
+"""The filters of `denoise`, one entry each."""
 
 import functools
 import inspect
@@ -23,7 +23,7 @@ from quatfilt.filters import (
 )
 
 AUTO: Final = "auto"
-"""Stands for the best chain that this version has, or for that of a preset."""
+"""The best chain of this version, or the chain of a preset."""
 
 REQUIRED: Final = inspect.Parameter.empty
 """The default of an option that has none."""
@@ -40,9 +40,9 @@ class Method:
     with_translation : callable
         The same for rotations and the translation of the root, or None; takes every option by name.
     angles : tuple of str
-        Options in radians of rotation, which the command line takes in degrees.
+        Options in radians of rotation; the command line takes them in degrees.
     hidden : tuple of str
-        Options that make something else than rotations.
+        Options with which the result is not rotations.
     """
 
     filter: Callable[..., Any]
@@ -52,13 +52,13 @@ class Method:
 
     @functools.cached_property
     def defaults(self) -> Mapping[str, Any]:
-        """All that `with_translation` takes by name, with the default of the filter or `REQUIRED`."""
+        """All keyword arguments of `with_translation`, with the default of the filter or `REQUIRED`."""
         _, *parameters = inspect.signature(self.filter).parameters.values()
         return {parameter.name: parameter.default for parameter in parameters}
 
     @functools.cached_property
     def options(self) -> tuple[str, ...]:
-        """What can be chosen."""
+        """Options that a user can set."""
         return tuple(name for name in self.defaults if name not in self.hidden)
 
 
@@ -83,6 +83,6 @@ FILTERS: Final[dict[str, Method]] = {
 """The filters by name."""
 
 METHODS: Final = (AUTO, *FILTERS)
-"""What `method=` may be, or be a list of."""
+"""Values of `method=`, or of the items of its list."""
 
 __all__ = ["AUTO", "FILTERS", "METHODS", "REQUIRED", "Method"]

@@ -34,18 +34,20 @@ class Preset:
 
 
 BEST: Final = Preset(
-    "what method='auto' runs", {"despike": {}, "smooth": {"joints": "together", "noise": "measured"}}
+    "what method='auto' runs",
+    {"despike": {"radius": "auto"}, "smooth": {"joints": "together", "noise": "measured"}},
 )
 """The best chain that this version has, for clips of which nothing is known."""
 
 PRESETS: Final[dict[str, Preset]] = {
     "optical": Preset(
         "markers and infrared cameras, 100 frames per second and more: little noise, swapped and hidden markers",
-        {"despike": {}, "smooth": {"joints": "together", "noise": "measured"}},
+        {"despike": {"radius": "auto"}, "smooth": {"joints": "together", "noise": "measured"}},
         {"max_gap": 0.5},
         "never",
         {
             "despike": "markers that change places throw a limb about for a frame or two",
+            "despike.radius": "runs of several frames lie close together where markers are confused; 10 frames at 120 per second",
             "smooth.joints": "white noise at a high frame rate is what the automatic smoother is for, and a body repeats itself",
             "smooth.noise": "markers at the edge of the cameras' view are noisier for a while",
             "max_gap": "a limb hidden for longer may have done anything; longer gaps stay visible as such",
@@ -67,11 +69,12 @@ PRESETS: Final[dict[str, Preset]] = {
     ),
     "video": Preset(
         "poses estimated from video, 24 to 60 frames per second: strong noise that hangs together in time",
-        {"despike": {}, "smooth": {"joints": "together", "noise": "measured"}},
+        {"despike": {"radius": "auto"}, "smooth": {"joints": "together", "noise": "measured"}},
         {"max_gap": 2 / 3},
         "expected",
         {
             "despike": "detectors mistake left for right, or lose a limb, for up to 0.375 s",
+            "despike.radius": "runs of 90 ms at any frame rate",
             "smooth.joints": "a body repeats itself",
             "smooth.noise": "noise of detectors hangs together in time and comes and goes",
             "max_gap": "20 frames of 30 per second, as in Pose2Sim: trackers lose a limb for so long behind another",

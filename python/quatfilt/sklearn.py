@@ -99,7 +99,7 @@ def _transformer(name: str, filter_name: str) -> type[Filter]:
         for option, default in method.defaults.items():
             value = chosen.get(option, default)
             if value is REQUIRED:
-                raise TypeError(f"{name}.{option}: expected a value, got none")
+                raise TypeError(f"{name} needs a value of {option}: pass {option}=…")
             setattr(self, option, value)
 
     vars(__init__)["__signature__"] = signature

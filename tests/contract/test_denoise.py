@@ -62,7 +62,7 @@ def test_unknown_methods_in_a_list(name):
 
 @pytest.mark.parametrize("method", [[], ()])
 def test_no_method(method):
-    assert refused(ValueError, method=method) == "method: expected at least one name, got none"
+    assert refused(ValueError, method=method) == "method: expected at least one filter, got an empty list"
 
 
 @pytest.mark.parametrize("preset", ["film", "", 1, ["video"]])
@@ -89,25 +89,26 @@ def options(function, *, without=()):
 
 def test_unknown_options():
     assert refused(TypeError, radius=3, method="nonlocal_pose_means") == (
-        f"radius: expected an option of nonlocal_pose_means ({options(qf.nonlocal_pose_means)}), got this name"
+        "radius: no filter of the chain has this option; "
+        f"it has nonlocal_pose_means ({options(qf.nonlocal_pose_means)})"
     )
     assert refused(TypeError, sigma=3, method=["bilateral", "orientation_filter", "bilateral"]) == (
-        f"sigma: expected an option of bilateral ({options(qf.bilateral)}) or "
-        "orientation_filter (mask, iterations, boundary, confidence, gaps, max_gap, fps, scalar_first), got this name"
+        f"sigma: no filter of the chain has this option; it has bilateral ({options(qf.bilateral)}); "
+        "orientation_filter (mask, iterations, boundary, confidence, gaps, max_gap, fps, scalar_first)"
     )
 
 
 def test_options_of_a_step_that_it_does_not_have():
     message = refused(TypeError, method="bilateral", bilateral={"sigma": 3})
     own = options(qf.bilateral, without=OF_THE_CLIP)
-    assert message == f"bilateral.sigma: expected an option of bilateral ({own}), got this name"
+    assert message == f"bilateral has no option sigma; it has {own}"
     assert own.startswith("radius, sigma_time, sigma_angle, kernel, iterations, boundary")
 
 
 @pytest.mark.parametrize("option", ["gaps", "max_gap", "fps", "confidence", "scalar_first"])
 def test_options_of_the_clip_are_no_steps_own(option):
     message = refused(TypeError, method="nonlocal_pose_means", nonlocal_pose_means={option: 1})
-    assert message.startswith(f"nonlocal_pose_means.{option}: expected an option of nonlocal_pose_means (")
+    assert message.startswith(f"nonlocal_pose_means has no option {option}; it has ")
 
 
 def test_options_of_a_step_that_does_not_run():
@@ -115,28 +116,34 @@ def test_options_of_a_step_that_does_not_run():
         TypeError, method=["nonlocal_pose_means", "orientation_filter"], bilateral={"radius": 2}
     )
     assert message == (
-        "bilateral: expected one of the steps nonlocal_pose_means, orientation_filter, got another method"
+        "bilateral: the chain has no such filter, only nonlocal_pose_means, orientation_filter; add it to method"
     )
 
 
 def test_options_of_a_step_are_a_dict():
     message = refused(TypeError, method="bilateral", bilateral=3)
-    assert message == "bilateral: expected a dict of options of this step, got int"
+    assert message == "bilateral: expected a dict of options of the filter bilateral, got int"
+
+
+def test_an_option_with_the_name_of_a_filter():
+    message = refused(TypeError, method="kalman", smooth=False)
+    assert (
+        message
+        == "smooth: this is the name of a filter; for the option of kalman pass kalman={'smooth': False}"
+    )
 
 
 def test_options_that_several_steps_have():
     message = refused(TypeError, method=["bilateral", "orientation_filter"], mask=[1, 1, 1], iterations=2)
-    assert message == "iterations: expected an option of one step, got one of bilateral, orientation_filter"
+    assert message == (
+        "iterations: bilateral, orientation_filter have this option; name the filter, as in bilateral={'iterations': …}"
+    )
 
 
 def test_options_without_a_default():
-    assert (
-        refused(TypeError, method="orientation_filter")
-        == "orientation_filter.mask: expected a value, got none"
-    )
-    assert refused(TypeError, method=["bilateral", "orientation_filter"], orientation_filter={}) == (
-        "orientation_filter.mask: expected a value, got none"
-    )
+    message = "orientation_filter needs a value of mask: pass mask=…"
+    assert refused(TypeError, method="orientation_filter") == message
+    assert refused(TypeError, method=["bilateral", "orientation_filter"], orientation_filter={}) == message
 
 
 def test_options_reach_the_filter():
@@ -244,7 +251,7 @@ def test_every_method_takes_float32_and_fills_gaps(name):
 def test_motions_are_scalar_first():
     with pytest.raises(TypeError) as caught:
         qf.denoise(motion(), scalar_first=False)
-    assert str(caught.value) == "scalar_first: expected no such option with a Motion, got one"
+    assert str(caught.value) == "scalar_first applies to arrays only; a Motion has its own convention"
 
 
 def test_a_motion_knows_its_frame_rate():

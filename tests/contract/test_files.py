@@ -196,9 +196,9 @@ def test_errors_are_values_and_travel(tmp_path):
             (["a"], [0], [[0, 0, 0]]),
             "parents: expected −1 or the index of a joint before it for joint 0, got 0",
         ),
-        ((["a"], [-1, 0], [[0, 0, 0]]), "parents: expected one for each of 1 names, got shape (2,)"),
+        ((["a"], [-1, 0], [[0, 0, 0]]), "parents: expected one parent for each of 1 names, got shape (2,)"),
         ((["a"], [-1], [[0, 0]]), "offsets: expected shape (1, 3), got (1, 2)"),
-        ((["a"], [-1], [[0, 0, np.nan]]), "offsets: expected finite numbers"),
+        ((["a"], [-1], [[0, 0, np.nan]]), "offsets: expected finite numbers, got nan"),
     ],
 )
 def test_skeletons(arguments, message):

@@ -160,7 +160,7 @@ def test_a_library_is_a_clip_or_a_list_of_clips():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"library": ()}, "library: expected a clip or a list of at least one, got none"),
+        ({"library": ()}, "library: expected a clip or a list of clips, got an empty list"),
         ({"library": [np.ones((4, 2, 4)) / 2]}, "library[0]: expected 3 joints as in the clip, got 2"),
         ({"library": np.ones((4, 3, 4)) / 2, "chart": "identity"}, "chart: expected 'mean' or 'local' with a library, got 'identity'"),
     ],

@@ -11,6 +11,7 @@ POSITIVE = "expected a number above 0"
 NOT_NEGATIVE = "expected a number of at least 0"
 
 BELOW_NYQUIST = "expected a number of at least 1e-06 and below the Nyquist frequency fps / 2 = 0.5"
+WITHOUT_FPS = "pass the frame rate to give it in hertz, for example fps=30 (frames per second)"
 
 WRONG_OPTIONS = [
     ("radius", -1, ValueError, "expected an integer of at least 0 and at most 5000, got -1"),
@@ -18,8 +19,8 @@ WRONG_OPTIONS = [
     ("radius", 4.0, TypeError, "expected an integer of at least 0 and at most 5000, got float"),
     ("cutoff", 0, ValueError, f"{POSITIVE}, got 0"),
     ("cutoff", math.inf, ValueError, f"{POSITIVE}, got inf"),
-    ("cutoff", 6, ValueError, f"{BELOW_NYQUIST}, got 6"),
-    ("cutoff", [0.1, 0.5, 0.1], ValueError, f"[1]{{}}{BELOW_NYQUIST}, got 0.5"),
+    ("cutoff", 6, ValueError, f"{BELOW_NYQUIST}, got 6; {WITHOUT_FPS}"),
+    ("cutoff", [0.1, 0.5, 0.1], ValueError, f"[1]{{}}{BELOW_NYQUIST}, got 0.5; {WITHOUT_FPS}"),
     ("cutoff", 1e-7, ValueError, f"{BELOW_NYQUIST}, got 1e-07"),
     ("cutoff", [0.1] * 4, ValueError, "expected a number or one per joint, shape (3,), got (4,)"),
     ("order", 0, ValueError, "expected an integer of at least 1 and at most 20, got 0"),
@@ -143,7 +144,7 @@ WRONG_OPTIONS = [
     ("boundary", "wrap", ValueError, "expected one of 'nearest', 'mirror', 'linear', got 'wrap'"),
     ("gaps", "drop", ValueError, "expected one of 'fill', 'keep', 'raise', got 'drop'"),
     ("gaps", True, ValueError, "expected one of 'fill', 'keep', 'raise', got True"),
-    ("library", [], ValueError, "expected a clip or a list of at least one, got none"),
+    ("library", [], ValueError, "expected a clip or a list of clips, got an empty list"),
     ("library", np.ones((5, 3)), ValueError, "expected shape (..., 4), got (5, 3)"),
     ("max_gap", -1, ValueError, f"{NOT_NEGATIVE}, got -1"),
     ("max_gap", math.nan, ValueError, f"{NOT_NEGATIVE}, got nan"),
@@ -168,6 +169,7 @@ WRONG_OPTIONS = [
 WRONG_OPTIONS_OF_DESPIKE = [
     ("radius", 1, ValueError, "expected an integer of at least 2 and at most 1000, got 1"),
     ("radius", 1001, ValueError, "expected an integer of at least 2 and at most 1000, got 1001"),
+    ("radius", "wide", ValueError, "expected 'auto' or a number of frames, got 'wide'"),
     ("radius", 3.0, TypeError, "expected an integer of at least 2 and at most 1000, got float"),
     ("threshold", 0, ValueError, f"{POSITIVE}, got 0"),
     ("threshold", math.inf, ValueError, f"{POSITIVE}, got inf"),

@@ -53,12 +53,12 @@ REFUSED = [
     (
         {"recent": RECENT[1:]},
         ValueError,
-        "recent: expected shape (2, 3, 4) as the segments begin, got (1, 3, 4)",
+        "recent: expected shape (2, 3, 4), that of the first poses of segments, got (1, 3, 4)",
     ),
     (
         {"recent": RECENT[:, 1:]},
         ValueError,
-        "recent: expected shape (2, 3, 4) as the segments begin, got (2, 2, 4)",
+        "recent: expected shape (2, 3, 4), that of the first poses of segments, got (2, 2, 4)",
     ),
     ({"recent": spoilt(RECENT)}, ValueError, "recent: expected no missing samples, got 1"),
     ({"root_steps": STEPS[1:]}, ValueError, "root_steps: expected shape (6, n), got (5, 4)"),

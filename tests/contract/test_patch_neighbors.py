@@ -81,7 +81,7 @@ def test_where_there_are_fewer_it_says_so():
             ValueError,
             "exclusion: expected None with a library, whose frames are not near in time, got 4",
         ),
-        ({"library": []}, ValueError, "library: expected a clip or a list of at least one, got none"),
+        ({"library": []}, ValueError, "library: expected a clip or a list of clips, got an empty list"),
         ({"library": [clip(), clip(joints=2)]}, ValueError, "library[1]: expected 3 joints as in the clip, got 2"),
         ({"library": clip(joints=2)}, ValueError, "library: expected 3 joints as in the clip, got 2"),
         (

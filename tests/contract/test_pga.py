@@ -50,10 +50,10 @@ MESSAGES = {
         np.array([[2.0, 0, 0, 0]])
     ),
     "rotations: expected at least one sample, got none": lambda: PGA().fit(clip()[:0]),
-    "rotations: expected samples less than π − 0.001 rad from their mean, got 3.1409 rad (180.0°) at joint 0": (
+    "rotations: samples must be less than π − 0.001 rad from their mean, but reach 3.1409 rad (180.0°) at joint 0; leave out this joint": (
         lambda: PGA().fit(about_z(*[0.0] * 10_000, 179.98))
     ),
-    "rotations: expected samples with one mean, got several as good, within 2.0944 rad (120.0°) at joint 0": (
+    "rotations: the mean is not unique, samples reach 2.0944 rad (120.0°) at joint 0; leave out this joint": (
         lambda: PGA().fit(np.eye(4))
     ),
     "rotations: expected shape (frames, 3, 4) as in fit, got (20, 4)": (

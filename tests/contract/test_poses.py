@@ -24,13 +24,13 @@ NEAREST = [
     (
         {"starts": [0, 20]},
         ValueError,
-        "starts: expected numbers that rise from 0 to 60, the number of poses, got 0 to 20",
+        "starts: expected indices that increase from 0 to 60, the number of poses, got 0 to 20",
     ),
     ({"starts": []}, ValueError, "starts: expected shape (clips + 1,), got (0,)"),
     (
         {"starts": [0, 30, 20, 60]},
         ValueError,
-        "starts: expected numbers that rise from 0 to 60, the number of poses, got 20 after 30",
+        "starts: expected indices that increase from 0 to 60, the number of poses, got 20 after 30",
     ),
     ({"starts": 60}, ValueError, "starts: expected shape (clips + 1,), got ()"),
     ({"starts": [0.0, 60.0]}, TypeError, "starts: expected integers, got dtype float64"),

@@ -29,18 +29,18 @@ def positions(frames=4):
         (
             {"control_points": ["LeftWirst"]},
             ValueError,
-            r"control_points: expected joints of the database, got 'LeftWirst'; close to it: LeftWrist, ",
+            r"control_points: the database has no joint 'LeftWirst'; similar names: LeftWrist, ",
         ),
         (
             {"control_points": ["qqq"]},
             ValueError,
-            r"control_points: expected joints of the database, got 'qqq'; they are Hips, ",
+            r"control_points: the database has no joint 'qqq'; the joints are Hips, ",
         ),
         ({"control_points": []}, ValueError, "control_points: expected at least one joint, got none"),
         (
             {"control_points": ["Head", "Head"]},
             ValueError,
-            "control_points: expected each joint once, got 'Head' again",
+            "control_points: 'Head' is named twice; name each joint once",
         ),
         (
             {"control_points": "Head"},
@@ -90,8 +90,8 @@ def test_a_database_of_short_clips():
         ({"positions": np.zeros((0, 4, 3))}, ValueError, "positions: expected at least one frame, got none"),
         ({"positions": np.full((4, 4, 3), np.nan)}, ValueError, "positions: expected at least one control point that is seen, got none"),
         ({"fps": 0}, ValueError, "fps: expected a number above 0, got 0"),
-        ({"fps": 0.001}, ValueError, "fps: expected from 0.6 to 6000 hertz, for the database has 60, got 0.001"),
-        ({"fps": 1e9}, ValueError, r"fps: expected from 0\.6 to 6000 hertz, for the database has 60, got 1e\+09"),
+        ({"fps": 0.001}, ValueError, "fps: expected 0.6 to 6000 hertz, because the database has 60, got 0.001"),
+        ({"fps": 1e9}, ValueError, r"fps: expected 0\.6 to 6000 hertz, because the database has 60, got 1e\+09"),
         ({"orientations": np.ones((4, 3, 4)) / 2}, ValueError, r"orientations: expected shape \(4, 4, 4\) as of the positions, got \(4, 3, 4\)"),
         ({"orientations": np.ones((4, 4, 4))}, ValueError, "orientations: expected unit quaternions, got norm 2"),
         ({"confidence": np.ones((4, 3))}, ValueError, r"confidence: expected shape \(4,\) or \(4, 4\), got \(4, 3\)"),

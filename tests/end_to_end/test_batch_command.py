@@ -160,8 +160,11 @@ def test_a_folder_of_recordings(data_dir, tmp_path):
     [
         (["absent"], "absent: No such file or directory"),
         (["day/notes.txt"], "notes.txt: expected .bvh, .amc or .npz, or a folder, got .txt"),
-        (["none"], "none: expected motion files (.bvh, .amc or .npz), got none"),
-        (["one.bvh", "again"], "again/one.bvh: expected another place than that of one.bvh, got out/one.bvh"),
+        (["none"], "none: no motion files (.bvh, .amc or .npz) found"),
+        (
+            ["one.bvh", "again"],
+            "again/one.bvh and one.bvh: both would be written to out/one.bvh; clean them into different folders",
+        ),
         ([".", "--to", "fbx"], "--to: expected one of 'bvh', 'npz', got 'fbx'"),
         ([".", "--workers", "0"], "--workers: expected an integer of at least 1, got 0"),
         ([".", "--method", "magic"], "method: expected one of 'auto', "),

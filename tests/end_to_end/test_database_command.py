@@ -135,7 +135,7 @@ def test_bad_input(takes, tmp_path, capsys):
     out, empty = tmp_path / "db", tmp_path / "empty"
     empty.mkdir()
     expected = {
-        (empty,): f"{empty}: expected motion files (.bvh, .amc or .npz), got none",
+        (empty,): f"{empty}: no motion files (.bvh, .amc or .npz) found",
         (tmp_path / "none",): f"{tmp_path / 'none'}: No such file or directory",
         (
             takes / "day" / "notes.txt",

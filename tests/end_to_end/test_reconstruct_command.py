@@ -66,18 +66,18 @@ def test_of_a_motion_with_its_error(files, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ([], "--points, --motion: expected one of them"),
-        (["--points", "points.csv", "--motion", "walk.bvh"], "--points, --motion: expected one of them"),
-        (["--motion", "walk.bvh"], "--joints: expected the control points of --motion, got none"),
+        ([], "pass either --points or --motion"),
+        (["--points", "points.csv", "--motion", "walk.bvh"], "pass either --points or --motion"),
+        (["--motion", "walk.bvh"], "--motion needs the control points: pass --joints NAME,NAME…"),
         (
             ["--motion", "walk.bvh", "--joints", "LeftWirst"],
-            "--joints: expected joints of the database, got 'LeftWirst'; close to it: LeftWrist, ",
+            "--joints: the database has no joint 'LeftWirst'; similar names: LeftWrist, ",
         ),
-        (["--points", "points.csv", "--joints", "Head"], "--joints: expected with --motion"),
+        (["--points", "points.csv", "--joints", "Head"], "--joints is for --motion only"),
         (["--points", "points.csv", "--fps", 0], "fps: expected a number above 0, got 0.0"),
         (
             ["--points", "points.csv", "--fps", 0.001],
-            "fps: expected from 0.6 to 6000 hertz, for the database has 60, got 0.001",
+            "fps: expected 0.6 to 6000 hertz, because the database has 60, got 0.001",
         ),
         (["--points", "none.csv"], "none.csv: No such file or directory"),
         (["--points", "points.csv", "--model", "magic"], "model: expected one of 'local_regression'"),
@@ -90,11 +90,11 @@ def test_bad_options(files, arguments, message):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "bad.csv: expected a header and rows, got nothing"),
+        ("", "bad.csv: expected a header and rows, got an empty file"),
         ("Head.x,Head.y,Head.z\n", "bad.csv: expected rows below the header, got none"),
         ("Head.x,Head.y\n1,2\n", "bad.csv: expected a column Head.z beside those of Head"),
         ("frame\n1\n", "bad.csv: expected columns joint.x, joint.y, joint.z, got none"),
-        ("Head.x,Head.x\n1,2\n", "bad.csv: expected columns of different names, got 'Head.x' twice"),
+        ("Head.x,Head.x\n1,2\n", "bad.csv: two columns are named 'Head.x'; name each column once"),
         (
             "Head,Head.x\n1,2\n",
             "bad.csv: expected columns joint.x, joint.y, joint.z, time or frame, got 'Head'",
@@ -107,10 +107,13 @@ def test_bad_options(files, arguments, message):
         ),
         ("Head.x,Head.y,Head.z\n1,2,inf\n", "bad.csv: line 2: expected a number, got 'inf'"),
         (f"Head.x,Head.y,Head.z\n1,2,{'3' * 200_000}\n", "bad.csv: line 2: field larger than field limit"),
-        ("Head.x,Head.y,Head.z\n1,2,3\n", "bad.csv: expected a column time in seconds, or --fps"),
+        (
+            "Head.x,Head.y,Head.z\n1,2,3\n",
+            "bad.csv: the frame rate is missing; add a column time in seconds, or pass --fps",
+        ),
         (
             "time,Head.x,Head.y,Head.z\n0,1,2,3\n1,1,2,3\n5,1,2,3\n",
-            "bad.csv: expected times in seconds at one rate",
+            "bad.csv: the column time must have seconds at a constant frame rate",
         ),
     ],
 )

@@ -43,19 +43,21 @@ def mean_of(q, trust, frame):
 def test_trusted_samples_stay(backend, seed, dtype):
     q, trust, rng = sample(seed)
     q = clips.flipped(rng, q).astype(dtype)
-    result = backend.trusted(q, trust.astype(dtype))
+    result = backend.pulled_by_confidence(q, trust.astype(dtype))
     assert result.dtype == dtype
     np.testing.assert_array_equal(np.abs(result[trust == 1]), np.abs(q[trust == 1]))
     np.testing.assert_allclose(np.linalg.norm(result, axis=-1), 1, atol=tolerances.algebra(dtype))
     assert (np.sum(result[1:] * result[:-1], axis=-1) >= 0).all()
-    np.testing.assert_array_equal(backend.trusted(q, np.ones_like(trust, dtype)), qf.continuous(q))
+    np.testing.assert_array_equal(
+        backend.pulled_by_confidence(q, np.ones_like(trust, dtype)), qf.continuous(q)
+    )
 
 
 @given(seed=seeds)
 def test_what_is_not_trusted_does_not_matter(backend, seed):
     q, trust, rng = sample(seed)
     wild = np.where(trust[..., None] == 0, clips.random_rotations(rng, *trust.shape), q)
-    first, second = (backend.trusted(np.ascontiguousarray(x), trust) for x in (q, wild))
+    first, second = (backend.pulled_by_confidence(np.ascontiguousarray(x), trust) for x in (q, wild))
     usable = (trust > 0).any(axis=0)
     np.testing.assert_array_equal(first[:, usable], second[:, usable])
 
@@ -65,7 +67,9 @@ def test_samples_without_confidence_are_filled_in(backend, seed):
     q, trust, _ = sample(seed)
     trust = np.where(trust == 0, 0.0, 1.0)
     gaps = np.where(trust[..., None] == 0, np.nan, q)
-    np.testing.assert_array_equal(backend.trusted(q, trust), backend.fill_gaps(gaps, -1, "slerp")[0])
+    np.testing.assert_array_equal(
+        backend.pulled_by_confidence(q, trust), backend.fill_gaps(gaps, -1, "slerp")[0]
+    )
 
 
 @pytest.mark.parametrize("frame", [0, 3, 20, FRAMES - 1])
@@ -76,7 +80,7 @@ def test_doubtful_samples_go_that_part_of_the_way(backend, frame, part):
     q[frame] = clips.product(q[frame], clips.from_vectors(np.array([0.8, -0.3, 0])))
     trust = np.ones((FRAMES, 1))
     trust[frame] = part
-    result = backend.trusted(q, trust)
+    result = backend.pulled_by_confidence(q, trust)
     mean = mean_of(q[:, 0], trust[:, 0], frame)
     whole = clips.angles(q[frame], mean[None])[0]
     assert clips.angles(result[frame], mean[None])[0] == pytest.approx(part * whole, abs=tolerances.FLOAT64)
@@ -91,26 +95,26 @@ def test_constant_rotations_on_either_side_and_signs_do_not_matter(backend, seed
     q, trust, rng = sample(seed)
     a, b = clips.random_rotations(rng, 2)
     moved = clips.flipped(rng, clips.product(a, clips.product(q, b)))
-    expected = clips.product(a, clips.product(backend.trusted(q, trust), b))
-    assert clips.angles(backend.trusted(moved, trust), expected).max() < tolerances.FLOAT64
+    expected = clips.product(a, clips.product(backend.pulled_by_confidence(q, trust), b))
+    assert clips.angles(backend.pulled_by_confidence(moved, trust), expected).max() < tolerances.FLOAT64
 
 
 @given(seed=seeds)
 def test_time_may_run_backwards(backend, seed):
     q, trust, _ = sample(seed)
-    result = backend.trusted(q, trust)
-    backwards = backend.trusted(np.ascontiguousarray(q[::-1]), np.ascontiguousarray(trust[::-1]))
+    result = backend.pulled_by_confidence(q, trust)
+    backwards = backend.pulled_by_confidence(np.ascontiguousarray(q[::-1]), np.ascontiguousarray(trust[::-1]))
     assert clips.angles(result, backwards[::-1]).max() < tolerances.FLOAT64
 
 
 @given(trust=st.sampled_from([0.0, 0.01, 0.5, 1.0]))
 def test_constant_clips_and_steady_turns_stay(backend, trust):
     still = np.repeat(clips.random_rotations(np.random.default_rng(2), 1, 2), FRAMES, axis=0)
-    result = backend.trusted(still, np.full((FRAMES, 2), trust))
+    result = backend.pulled_by_confidence(still, np.full((FRAMES, 2), trust))
     assert clips.angles(result, still).max() < tolerances.ALGEBRA
     steady = clips.from_vectors(0.1 * np.arange(FRAMES)[:, None, None] * np.array([0.6, 0, 0.8]))
     inside = slice(8, -8)
-    result = backend.trusted(steady, np.full((FRAMES, 1), trust))
+    result = backend.pulled_by_confidence(steady, np.full((FRAMES, 1), trust))
     assert clips.angles(result[inside], steady[inside]).max() < tolerances.FLOAT64
 
 

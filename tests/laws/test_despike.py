@@ -9,6 +9,7 @@ from drawn import dtypes, seeds
 from hypothesis import given
 from hypothesis import strategies as st
 from plugins.properties import examples
+from quatfilt.evaluation.clips import load, thinned
 from quatfilt.filters import despike
 
 RADIUS = 3
@@ -264,6 +265,31 @@ def test_without_a_frame_rate_there_are_no_bursts():
     assert despike.spikes(q, duration=8).sum() == 7
     assert despike.spikes(q, fps=30).sum() == 7
     assert not despike.spikes(q, fps=30, duration=0.2).any()
+
+
+@pytest.mark.parametrize(("fps", "radius"), [(1, 3), (24, 3), (30, 3), (60, 5), (120, 10), (240, 19)])
+def test_the_radius_follows_the_frame_rate(fps, radius):
+    rng = np.random.default_rng(17)
+    q = turned(clips.noisy(rng, clips.smooth(rng, 120, 2), 0.01), slice(60, 64), 0, [0.3, 0.5, -0.4])
+    auto, same = (qf.despike(q, radius=r, fps=fps) for r in ("auto", radius))
+    np.testing.assert_array_equal(auto, same)
+
+
+def test_bursts_that_lie_close_together_are_no_motion():
+    rng = np.random.default_rng(18)
+    clean = clips.noisy(rng, about_axis(0.25 * np.sin(np.arange(240) / 30)), 0.01)
+    q = turned(turned(clean, slice(60, 65), 0, [0.6, 0, 0]), slice(70, 77), 0, [0, 0.6, 0])
+    found = despike.spikes(q, radius="auto", fps=120)[:, 0]
+    assert np.flatnonzero(found).tolist() == [*range(60, 65), *range(70, 77)]
+
+
+def test_quick_limbs_stay(data_dir):
+    """Kicks, a run and boxing at 30 frames per second, and claps at 4 Hz: nothing is replaced."""
+    names = dict.fromkeys(("86_01", "09_01", "14_13", "14_32"), "")
+    claps = about_axis(1.0 * np.sin(2 * np.pi * 4 * LONG / 30 + 0.3))
+    for q in (*(thinned(clip, 4).steady_rotations for clip in load(data_dir, names, longest=2400)), claps):
+        result = qf.despike(q, radius="auto", fps=30)
+        assert clips.angles(result, q).max() < np.radians(3)
 
 
 @pytest.mark.usefixtures("backend")

@@ -210,7 +210,7 @@ def test_what_has_no_legs_is_left_alone_or_refused():
     assert np.array_equal(qf.lock_feet(other, feet=sides).rotations, by_topology.rotations)
     with pytest.raises(ValueError, match="feet: expected one of 'keep', 'lock', got 'hold'"):
         qf.denoise(noisy, **same, feet="hold")
-    with pytest.raises(TypeError, match="feet: expected a Motion to lock its feet, got ndarray"):
+    with pytest.raises(TypeError, match="feet='lock' needs a Motion, which has a skeleton, got ndarray"):
         qf.denoise(noisy.rotations, **same, feet="lock")
     with pytest.raises(TypeError, match="motion: expected a Motion, got ndarray"):
         qf.lock_feet(noisy.rotations)

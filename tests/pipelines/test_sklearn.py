@@ -70,7 +70,7 @@ def test_a_clip_with_gaps_goes_through(q):
 
 
 def test_wrong_options():
-    with pytest.raises(TypeError, match=r"^Gaussian.sigma: expected a value, got none$"):
+    with pytest.raises(TypeError, match=r"^Gaussian needs a value of sigma: pass sigma=…$"):
         transformers.Gaussian()
     with pytest.raises(ValueError, match=r"^Despike: expected options among radius, .*, got 'width'$"):
         transformers.Despike(width=3)

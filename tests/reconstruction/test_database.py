@@ -69,12 +69,14 @@ def same_motion(result, expected, *, rotations=tolerances.ALGEBRA_FLOAT32):
 
 def test_a_frame_rate_that_would_fill_the_memory_is_refused(tmp_path):
     slow = walk(seconds=1).replace(fps=0.001)
-    with pytest.raises(ValueError, match=r"fps: expected at most 0\.1 hertz, for crawl has 0\.001, got 60"):
+    with pytest.raises(
+        ValueError, match=r"fps: expected at most 0\.1 hertz, because crawl has 0\.001, got 60"
+    ):
         qf.MotionDatabase.from_motions([slow], clip_names=["crawl"])
-    with pytest.raises(ValueError, match=r"fps: expected at most 12000 hertz, for 0 has 120, got 1e\+09"):
+    with pytest.raises(ValueError, match=r"fps: expected at most 12000 hertz, because 0 has 120, got 1e\+09"):
         qf.MotionDatabase.from_motions([walk(seconds=1)], fps=1e9)
     qf.write_motion(tmp_path / "a.npz", walk(seconds=1))
-    with pytest.raises(ValueError, match=r"fps: expected at most 0\.1 hertz, for a has 0\.001, got 60"):
+    with pytest.raises(ValueError, match=r"fps: expected at most 0\.1 hertz, because a has 0\.001, got 60"):
         qf.MotionDatabase.from_folders(tmp_path, source_fps=0.001)
     assert len(qf.MotionDatabase.from_motions([walk(seconds=60)], fps=0.5)) == 30
 

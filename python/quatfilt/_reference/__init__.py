@@ -11,7 +11,7 @@ or with four zeros.
 
 from quatfilt._reference.filters.bilateral import bilateral
 from quatfilt._reference.filters.butterworth import butterworth
-from quatfilt._reference.filters.confidence import trusted
+from quatfilt._reference.filters.confidence import pulled_by_confidence
 from quatfilt._reference.filters.despike import find_spikes, find_swaps
 from quatfilt._reference.filters.development import develop, undevelop
 from quatfilt._reference.filters.gaps import fill_gaps
@@ -125,6 +125,7 @@ __all__ = [
     "predict_pose",
     "principal_frames",
     "principal_geodesics",
+    "pulled_by_confidence",
     "sampling",
     "savgol",
     "savgol_derivative",
@@ -143,7 +144,6 @@ __all__ = [
     "to_euler",
     "track",
     "tracker_noise",
-    "trusted",
     "undevelop",
     "unwhiten",
     "weighted_moving_mean",

@@ -1,4 +1,4 @@
-"""Every check of what users pass in, and every message.
+"""Every check of arguments, and every message.
 
 Arrays leave this package native, C-contiguous, aligned, float32 or float64, and scalar first.
 """

@@ -43,7 +43,7 @@ def _unmasked(array: "np.ma.MaskedArray[Any, Any]") -> Any:
 
 
 def scalar_order(array: Array, *, scalar_first: bool) -> Array:
-    """Return quaternions that are scalar first in the order that the caller asked for."""
+    """Return quaternions that are scalar first in the order of `scalar_first`."""
     first = switch(scalar_first, "scalar_first")
     return array if first else np.ascontiguousarray(np.roll(array, -1, axis=-1))
 
@@ -53,7 +53,7 @@ def quaternions(value: Any, name: str, *, scalar_first: bool = True) -> Array:
     array = floats(value, name)
     if array.ndim < 1 or array.shape[-1] != 4:
         raise ValueError(f"{name}: expected shape (..., 4), got {array.shape}")
-    # SciPy's rotations were scalar last by themselves; `scalar_first` then speaks of the result alone.
+    # SciPy's rotations have an order of their own; `scalar_first` applies to the result only.
     first = switch(scalar_first, "scalar_first") or _is_rotation(value)
     return array if first else np.ascontiguousarray(np.roll(array, 1, axis=-1))
 

@@ -16,7 +16,7 @@ def choice(
     *,
     elsewhere: Mapping[str, str] = MappingProxyType({}),
 ) -> _Choice:
-    """Return `value` if it is one of `options`; `elsewhere` tells why what other functions take will not do here."""
+    """Return `value` if it is one of `options`; `elsewhere` gives the reason why a value that other functions accept is refused here."""
     for option in options:
         if isinstance(value, str) and value == option:
             return option

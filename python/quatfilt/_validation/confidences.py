@@ -1,4 +1,4 @@
-"""How far samples are trusted: from 0 to 1."""
+"""Confidence of samples, from 0 to 1."""
 
 from typing import Any
 

@@ -9,14 +9,14 @@ from quatfilt._typing import Array, Mask
 from quatfilt._validation.arrays import floats
 
 _CUT = 1e-3
-"""Radians: samples that lie so near to half a turn from the mean may as well lie on its other side."""
+"""Radians: a sample so near to half a turn from the mean may be on either side of it."""
 
 _MOST = 1e5
 """Radians: sine and cosine are exact up to there, and larger angles have lost digits of their own."""
 
 
 def centred(radius: Array, unique: Mask, name: str = "rotations") -> None:
-    """Ask that each joint has samples around one mean, less than half a turn from it.
+    """Check that the samples of each joint have a unique mean and are less than half a turn from it.
 
     `radius` is the greatest rotation angle from the mean, NaN for a joint without samples.
     """
@@ -26,10 +26,10 @@ def centred(radius: Array, unique: Mask, name: str = "rotations") -> None:
         reach = f"{angle:.4f} rad ({math.degrees(angle):.1f}°) at joint {joint}"
         if angle > math.pi - _CUT:
             raise ValueError(
-                f"{name}: expected samples less than π − {_CUT:g} rad from their mean, got {reach}"
+                f"{name}: samples must be less than π − {_CUT:g} rad from their mean, but reach {reach}; leave out this joint"
             )
         if not unique[joint]:
-            raise ValueError(f"{name}: expected samples with one mean, got several as good, within {reach}")
+            raise ValueError(f"{name}: the mean is not unique, samples reach {reach}; leave out this joint")
 
 
 def scores(value: Any, shape: tuple[int, ...], most: int) -> Array:

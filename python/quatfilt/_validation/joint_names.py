@@ -20,12 +20,10 @@ def joint_names(value: Any, name: str, names: Sequence[str]) -> NDArray[np.int64
     index = {joint: place for place, joint in enumerate(names)}
     for joint in value:
         if joint not in index:
-            raise ValueError(
-                f"{name}: expected joints of the database, got {joint!r}{_close(str(joint), names)}"
-            )
+            raise ValueError(f"{name}: the database has no joint {joint!r}{_close(str(joint), names)}")
     twice = [joint for place, joint in enumerate(value) if joint in value[:place]]
     if twice:
-        raise ValueError(f"{name}: expected each joint once, got {twice[0]!r} again")
+        raise ValueError(f"{name}: {twice[0]!r} is named twice; name each joint once")
     return np.array([index[joint] for joint in value], np.int64)
 
 
@@ -33,5 +31,5 @@ def _close(name: str, names: Sequence[str]) -> str:
     by_lower = {joint.lower(): joint for joint in names}
     near = difflib.get_close_matches(name.lower(), by_lower, n=_CLOSE)
     if near:
-        return f"; close to it: {', '.join(by_lower[joint] for joint in near)}"
-    return f"; they are {', '.join(names[:8])}{', …' if len(names) > 8 else ''}"
+        return f"; similar names: {', '.join(by_lower[joint] for joint in near)}"
+    return f"; the joints are {', '.join(names[:8])}{', …' if len(names) > 8 else ''}"

@@ -11,6 +11,9 @@ from quatfilt._validation.numbers import number
 _LOWEST_FREQUENCY = 1e-6
 """Periods per frame: the coefficients of filters for lower ones have lost too many digits."""
 
+_RATE_MISSING = "; pass the frame rate to give it in hertz, for example fps=30 (frames per second)"
+"""Hint where `fps` has its default 1, so that frequencies are per frame."""
+
 
 def per_joint(
     value: Any,
@@ -47,6 +50,6 @@ def frequencies(value: Any, name: str, joints: int, fps: float) -> NDArray[np.fl
             place = name if np.ndim(value) == 0 else f"{name}[{joint}]"
             raise ValueError(
                 f"{place}: expected a number of at least {lowest:g} and below the Nyquist frequency "
-                f"fps / 2 = {nyquist:g}, got {one:g}"
+                f"fps / 2 = {nyquist:g}, got {one:g}{_RATE_MISSING if fps == 1 and one >= nyquist else ''}"
             )
     return array

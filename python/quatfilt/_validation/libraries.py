@@ -22,7 +22,7 @@ def library(value: Any, like: Array, *, scalar_first: bool) -> tuple[Array | Non
     if isinstance(value, (list, tuple)) and not _is_clip(value, like.shape[1]):
         named = {f"library[{i}]": one for i, one in enumerate(value)}
         if not named:
-            raise ValueError("library: expected a clip or a list of at least one, got none")
+            raise ValueError("library: expected a clip or a list of clips, got an empty list")
     clips = []
     for name, one in named.items():
         array, _ = clip(one, name, scalar_first=scalar_first)

@@ -9,7 +9,7 @@ from quatfilt._validation.arrays import floats
 
 _LONGEST_REACH = 5000
 """Frames, weighted: with longer masks, or a smaller sum of their weights, rotations would move by more turns than sine
-and cosine take exactly in float32."""
+and cosine compute exactly in float32."""
 
 
 def mask(value: Any, name: str) -> NDArray[np.float64]:

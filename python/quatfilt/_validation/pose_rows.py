@@ -33,7 +33,7 @@ def starts(value: Any, name: str, poses: int) -> NDArray[np.int64]:
             else f"{result[0]} to {result[-1]}"
         )
         raise ValueError(
-            f"{name}: expected numbers that rise from 0 to {poses}, the number of poses, got {got}"
+            f"{name}: expected indices that increase from 0 to {poses}, the number of poses, got {got}"
         )
     return result
 

@@ -1,4 +1,4 @@
-"""Examples of how motion goes on, and the motion that is to go on."""
+"""Examples for the next pose, and the last poses of a motion."""
 
 from typing import Any
 
@@ -20,7 +20,9 @@ def segments(value: Any, recent: Any, *, scalar_first: bool) -> tuple[Array, Arr
     poses = quaternions(recent, "recent", scalar_first=scalar_first)
     expected = (examples.shape[1] - 1, *examples.shape[2:])
     if poses.shape != expected:
-        raise ValueError(f"recent: expected shape {expected} as the segments begin, got {poses.shape}")
+        raise ValueError(
+            f"recent: expected shape {expected}, that of the first poses of segments, got {poses.shape}"
+        )
     for name, array in (("segments", examples.reshape(-1, *expected[1:])), ("recent", poses)):
         _, missing = clip(array, name)
         if missing:

@@ -16,7 +16,7 @@ def parents(value: ArrayLike, joints: int) -> NDArray[np.int64]:
     if array.dtype.kind not in "iu":
         raise TypeError(f"parents: expected integers, got dtype {array.dtype}")
     if array.shape != (joints,):
-        raise ValueError(f"parents: expected one for each of {joints} names, got shape {array.shape}")
+        raise ValueError(f"parents: expected one parent for each of {joints} names, got shape {array.shape}")
     result = array.astype(np.int64)
     for joint, parent in enumerate(result):
         if not -1 <= parent < joint:
@@ -33,7 +33,7 @@ def offsets(value: ArrayLike, joints: int) -> NDArray[np.float64]:
     if array.shape != (joints, 3) and not (joints == 0 and array.size == 0):
         raise ValueError(f"offsets: expected shape ({joints}, 3), got {array.shape}")
     if not np.isfinite(array).all():
-        raise ValueError("offsets: expected finite numbers")
+        raise ValueError(f"offsets: expected finite numbers, got {array[~np.isfinite(array)][0]}")
     array = array.reshape(joints, 3)
     array.setflags(write=False)
     return array

@@ -16,12 +16,12 @@ from typing import Any, Literal
 from quatfilt import _backend
 from quatfilt.cli import _cleaning, _errors
 
-_DIED = "the process that cleaned it came to an end, perhaps for want of memory"
+_DIED = "the process that cleaned it was killed; the memory may be too small: try fewer --workers"
 
 
 @dataclass(frozen=True)
 class Task:
-    """A file, and where its clean copy goes."""
+    """A file and the path of its clean copy."""
 
     source: Path
     target: Path

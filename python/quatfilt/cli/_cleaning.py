@@ -1,4 +1,4 @@
-"""From a noisy file to a clean one, and a record of what happened."""
+"""From a noisy file to a clean one, with a record."""
 
 import contextlib
 import time
@@ -25,12 +25,12 @@ from quatfilt.noise.noise import noise_level
 from quatfilt.rotations.resample import resample
 
 Busy = Callable[[str], contextlib.AbstractContextManager[None]]
-"""Shows what is going on."""
+"""Shows the current step."""
 
 
 @dataclass(frozen=True)
 class How:
-    """What is done to each file."""
+    """Options of the cleaning of each file."""
 
     wish: Mapping[str, Any]
     """Keywords for `denoise`."""
@@ -42,7 +42,7 @@ class How:
     library: tuple[Path, ...] = ()
     """Clean motions of the same joints, which the filters may borrow from."""
     feet: Placement | None = "keep"
-    """What happens to feet on the ground after the filters."""
+    """Placement of feet on the ground after the filters."""
 
 
 @dataclass(frozen=True)
@@ -74,23 +74,23 @@ def clean(source: Path, target: Path, motion: Motion, how: How, *, busy: Busy = 
     Parameters
     ----------
     source, target : Path
-        Where it was read, and where the result goes.
+        Path of the input, and path of the result.
     motion : Motion
-        What was read.
+        The motion of the input.
     how : How
-        What is done.
+        Options.
     busy : callable
-        Gets told what is going on.
+        Context manager that shows the current step.
 
     Returns
     -------
     Cleaned
-        Both motions, and what there is to say about them.
+        Both motions and the record.
 
     Raises
     ------
     QuatfiltError, ValueError, TypeError
-        If a file or an option is not what it should be.
+        If a file or an option is invalid.
     """
     options = dict(how.wish)
     if how.confidence is not None:

@@ -1,22 +1,22 @@
-"""What went wrong, in one line, and whose fault it is."""
+"""Messages of errors in one line, and exit statuses."""
 
 from quatfilt.cli._output import one_line
 from quatfilt.errors import QuatfiltError
 
 BAD_INPUT = (QuatfiltError, ValueError, TypeError, OSError, ImportError)
-"""What a user can do something about."""
+"""Errors that a user can correct."""
 
 OF_THE_USER, OF_QUATFILT = 2, 1
 """Exit statuses."""
 
 
 def explained(error: Exception) -> tuple[str, int]:
-    """Return what is to be said of an error, in one line, and the exit status.
+    """Return the message of an error, in one line, and the exit status.
 
     Parameters
     ----------
     error : Exception
-        What was raised.
+        The exception.
 
     Returns
     -------

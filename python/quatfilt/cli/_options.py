@@ -1,4 +1,4 @@
-"""Arguments and options that several verbs have."""
+"""Arguments and options of several commands."""
 
 from pathlib import Path
 from typing import Annotated, TypeAlias, cast
@@ -16,12 +16,12 @@ Input: TypeAlias = Annotated[
 ]
 Fps: TypeAlias = Annotated[
     float | None,
-    typer.Option("--fps", metavar="HZ", help="Frames per second, instead of what the file says."),
+    typer.Option("--fps", metavar="HZ", help="Frames per second, instead of the rate in the file."),
 ]
 SkeletonFile: TypeAlias = Annotated[
     Path | None,
     typer.Option(
-        "--skeleton", metavar="ASF", help="Skeleton of an .amc file; by default the .asf beside it."
+        "--skeleton", metavar="ASF", help="Skeleton of an .amc file. [default: the .asf in its folder]"
     ),
 ]
 FirstFrameChoice: TypeAlias = Annotated[
@@ -29,13 +29,13 @@ FirstFrameChoice: TypeAlias = Annotated[
     typer.Option(
         "--first-frame",
         metavar="auto|keep|drop",
-        help="What becomes of a first row that is a rest pose; auto: it is not filtered, and written again.",
+        help="First frame that is a rest pose: auto leaves it unfiltered and writes it again, keep filters it, drop removes it.",
     ),
 ]
-Json: TypeAlias = Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")]
+Json: TypeAlias = Annotated[bool, typer.Option("--json", help="Print the result as JSON only.")]
 Threads: TypeAlias = Annotated[
     int | None,
-    typer.Option("--threads", metavar="N", help="How many threads compute; by default all processors."),
+    typer.Option("--threads", metavar="N", help="Number of threads. [default: all processors]"),
 ]
 
 

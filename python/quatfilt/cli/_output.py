@@ -1,4 +1,4 @@
-"""How verbs speak: tables for people, JSON for programs, progress on a terminal."""
+"""Output of the commands: tables for people, JSON for programs, progress on a terminal."""
 
 import contextlib
 import io
@@ -73,7 +73,7 @@ def print_table(columns: Sequence[str], rows: Sequence[Sequence[str]], *, title:
 
 
 def print_report(report: Report) -> None:
-    """Print what a filter did."""
+    """Print a report."""
     say("")
     say(text.summary(report))
     for table in text.tables(report):

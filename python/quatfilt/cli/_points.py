@@ -17,7 +17,7 @@ _TIMES = ("time", "t", "seconds")
 _FRAMES = ("frame", "index")
 
 _EVEN = 0.01
-"""Part of a frame by which times may miss an even rate: tables round their seconds."""
+"""Share of a frame by which times may differ from a constant rate: tables round their seconds."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Points:
     positions : ndarray, shape (frames, points, 3)
         NaN where a cell is empty.
     fps : float or None
-        What a column of seconds says.
+        Frame rate of a column of seconds.
     """
 
     joints: tuple[str, ...]
@@ -59,7 +59,7 @@ def read(path: Path) -> Points:
         raise FileFormatError(path, None, "expected text in UTF-8") from None
     rows = _rows(path, text)
     if not rows:
-        raise FileFormatError(path, None, "expected a header and rows, got nothing")
+        raise FileFormatError(path, None, "expected a header and rows, got an empty file")
     header = [cell.strip() for cell in rows[0][1]]
     joints = _joints(path, header)
     values = np.array([_numbers(path, line, row, len(header)) for line, row in rows[1:]])
@@ -82,7 +82,7 @@ def _rows(path: Path, text: str) -> list[tuple[int, list[str]]]:
 def _joints(path: Path, header: list[str]) -> tuple[str, ...]:
     twice = [name for place, name in enumerate(header) if name in header[:place]]
     if twice:
-        raise FileFormatError(path, None, f"expected columns of different names, got {twice[0]!r} twice")
+        raise FileFormatError(path, None, f"two columns are named {twice[0]!r}; name each column once")
     joints: dict[str, None] = {}
     for name in header:
         joint, dot, axis = name.rpartition(".")
@@ -125,5 +125,5 @@ def _rate(path: Path, header: list[str], values: NDArray[np.float64]) -> float |
     step = (times[-1] - times[0]) / (len(times) - 1)
     even = times[0] + step * np.arange(len(times))
     if not (step > 0 and np.abs(times - even).max() <= _EVEN * step + 1e-3):
-        raise FileFormatError(path, None, "expected times in seconds at one rate")
+        raise FileFormatError(path, None, "the column time must have seconds at a constant frame rate")
     return float(1 / step)

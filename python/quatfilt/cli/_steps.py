@@ -1,4 +1,4 @@
-"""From the words of the command line to what `denoise` is to run."""
+"""From the options of the command line to the arguments of `denoise`."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -21,7 +21,7 @@ Method: TypeAlias = Annotated[
     typer.Option(
         "--method",
         metavar="NAME[,NAME…]",
-        help=f"Filters, in this order; may be given several times. [default: {METHODS[0]}]",
+        help=f"Filters, in this order; may be repeated. [default: {METHODS[0]}]",
         show_default=False,
     ),
 ]
@@ -33,19 +33,24 @@ Options: TypeAlias = Annotated[
     typer.Option(
         "--option",
         metavar="[METHOD.]NAME=VALUE",
-        help="Any option of a filter, as bilateral.radius=3; lists as 1,2,1; angles in degrees. May be given several times.",
+        help="Any option of a filter, such as bilateral.radius=3; lists as 1,2,1; angles in degrees. May be repeated.",
         show_default=False,
     ),
 ]
 Gaps: TypeAlias = Annotated[
-    str | None, typer.Option("--gaps", metavar="fill|keep|raise", help="What becomes of missing samples.")
+    str | None,
+    typer.Option(
+        "--gaps",
+        metavar="fill|keep|raise",
+        help="Missing samples: fill them, keep them as NaN, or refuse them.",
+    ),
 ]
 MaxGap: TypeAlias = Annotated[
     float | None,
     typer.Option("--max-gap", metavar="SECONDS", help="The longest gap to fill. [default: any]"),
 ]
 Translation: TypeAlias = Annotated[
-    bool, typer.Option("--translation/--no-translation", help="Clean the path of the root too.")
+    bool, typer.Option("--translation/--no-translation", help="Filter the translation of the root too.")
 ]
 
 Feet: TypeAlias = Annotated[
@@ -53,13 +58,13 @@ Feet: TypeAlias = Annotated[
     typer.Option(
         "--feet",
         metavar="keep|lock|none",
-        help="Feet on the ground: keep them as in the input, lock them to one point, or leave them to the filter.",
+        help="Feet on the ground: keep their path of the input, lock them at one point, or none: leave them as filtered.",
     ),
 ]
 
 
 def placement(word: str) -> Placement | None:
-    """Return what the word after ``--feet`` means."""
+    """Return the value of ``--feet``."""
     chosen = word.strip().lower()
     if chosen == "none":
         return None
@@ -88,7 +93,7 @@ def asked(
     method, preset, option : as on the command line
         Names of filters, perhaps with commas; a preset; ``[METHOD.]NAME=VALUE``.
     flags : mapping
-        Values of options that have flags of their own; None for those that were not given. Texts are values of
+        Values of options that have flags of their own; None for those not given. Strings are values of
         ``--option``.
 
     Returns
@@ -99,7 +104,7 @@ def asked(
     Raises
     ------
     ValueError, TypeError
-        If something is not what was stated; the message names it.
+        If an argument is invalid; the message names it.
     """
     chosen = [_name(word) for words in method or () for word in words.split(",")] or [METHODS[0]]
     wish: dict[str, Any] = {"method": chosen if len(chosen) > 1 else chosen[0], "preset": preset}
@@ -124,19 +129,19 @@ def asked(
     for name in own:
         if name in plain:
             raise ValueError(
-                f"--option: expected {name}.{name}=VALUE beside other options of {name}, got {name}=VALUE"
+                f"--option {name}: this is the name of a filter; write {name}.{name}=VALUE for its option"
             )
     return {**wish, **plain, **own}
 
 
 def planned(wish: Mapping[str, Any]) -> tuple[Step, ...]:
-    """Return the steps that `denoise` will run, and so refuse what it will refuse of names and options."""
+    """Return the steps that `denoise` will run; names and options are checked as there."""
     options = dict(wish)
     return plan(options.pop("method"), options.pop("preset"), options)
 
 
 def described(steps: Sequence[Step]) -> list[dict[str, Any]]:
-    """Return the steps as a record of what ran: names, and the values that were chosen."""
+    """Return the steps as a record: names and chosen values."""
     return [
         {
             "method": step.name,
@@ -147,7 +152,7 @@ def described(steps: Sequence[Step]) -> list[dict[str, Any]]:
 
 
 def read_confidence(path: Path, frames: int, joints: int) -> Array:
-    """Return how far samples count, ``(frames,)`` or ``(frames, joints)``, from a ``.npy`` or a table of numbers."""
+    """Return the confidence of samples, ``(frames,)`` or ``(frames, joints)``, from a ``.npy`` or a table of numbers."""
     try:
         if path.suffix.lower() == ".npy":
             values = np.load(path, allow_pickle=False)
@@ -156,7 +161,7 @@ def read_confidence(path: Path, frames: int, joints: int) -> Array:
     except OSError as error:
         raise FileAccessError(str(path), error.strerror or str(error)) from None
     except (ValueError, EOFError) as error:
-        raise ValueError(f"{path}: expected numbers, got {error}") from None
+        raise ValueError(f"{path}: expected a table of numbers ({error})") from None
     return cast("Array", _validation.confidence(values, frames, joints, np.dtype(np.float64)))
 
 
@@ -177,7 +182,7 @@ def _is_angle(option: str, running: Sequence[str]) -> bool:
 
 
 def _value(text: str, name: str, *, angle: bool) -> Any:
-    """Return what a text means: a word, a number, a list of numbers, or itself; angles in radians."""
+    """Parse a value: a word, a number, a list of numbers, or the text itself; angles in radians."""
     word = text.strip()
     if word.lower() in _WORDS:
         return _WORDS[word.lower()]

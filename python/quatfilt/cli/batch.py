@@ -52,28 +52,29 @@ def batch(
             "--to", metavar="bvh|npz", help="Format to write. [default: that of the input, .bvh for .amc]"
         ),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Clean files again whose output is there.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Clean files again whose output exists.")] = False,
     workers: Annotated[
         int | None,
-        typer.Option(metavar="N", help="How many files are cleaned at once. [default: one per processor]"),
+        typer.Option(
+            metavar="N", help="Number of files that are cleaned at once. [default: one per processor]"
+        ),
     ] = None,
     log: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE", help=f"Where a line of JSON for each file is added. [default: OUT/{_LOG}]"
+            metavar="FILE",
+            help=f"File to which one line of JSON per input is appended. [default: OUT/{_LOG}]",
         ),
     ] = None,
     fps: _options.Fps = None,
     skeleton: _options.SkeletonFile = None,
     first_frame: _options.FirstFrameChoice = "auto",
-    json: Annotated[
-        bool, typer.Option("--json", help="Print a line of JSON for each file, and nothing else.")
-    ] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print one line of JSON per file only.")] = False,
 ) -> None:
     """Clean many motion files, several at once.
 
-    An output that is there is kept: what was interrupted goes on where it was. Files are written under temporary names
-    and renamed, so that none is ever half written. A file that fails does not stop the others; the exit status is then 2.
+    An existing output is kept, so an interrupted run continues. Files are written under temporary names and renamed: none
+    is half written. After a failed file the remaining files are still processed; the exit status is then 2.
     """
     wish = _steps.asked(method, preset, option, {"gaps": gaps, "max_gap": max_gap})
     _steps.planned(wish)
@@ -108,12 +109,12 @@ def batch(
 
 
 def found(inputs: Sequence[Path], output: Path, to: str | None) -> list[Task]:
-    """Return the files that are to be cleaned, and where to.
+    """Return the files to clean with their targets.
 
     Raises
     ------
     ValueError
-        If there is none, or if two of them would go to one place.
+        If there is none, or if two of them have the same target.
     """
     extension = None if to is None else "." + _validation.choice(to, "--to", tuple(x[1:] for x in WRITABLE))
     targets: dict[Path, Path] = {}
@@ -123,11 +124,11 @@ def found(inputs: Sequence[Path], output: Path, to: str | None) -> list[Task]:
             target = output / place.with_suffix(extension or written_as(source.suffix))
             if targets.setdefault(target, source) != source:
                 raise ValueError(
-                    f"{source}: expected another place than that of {targets[target]}, got {target}"
+                    f"{source} and {targets[target]}: both would be written to {target}; clean them into different folders"
                 )
     if not targets:
         names = ", ".join(map(str, inputs))
-        raise ValueError(f"{names}: expected motion files ({listed(READABLE)}), got none")
+        raise ValueError(f"{names}: no motion files ({listed(READABLE)}) found")
     return [Task(source, target) for target, source in targets.items()]
 
 

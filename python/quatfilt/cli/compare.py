@@ -21,7 +21,7 @@ _SAME_RATE = 0.01
 
 def compare(
     reference: Annotated[
-        Path, typer.Argument(metavar="A", help="The reference: what is true.", show_default=False)
+        Path, typer.Argument(metavar="A", help="The reference: the true motion.", show_default=False)
     ],
     estimate: Annotated[
         Path, typer.Argument(metavar="B", help="The estimate: noisy, or cleaned.", show_default=False)
@@ -80,7 +80,7 @@ def refuse_others(path_a: Path, a: Motion, path_b: Path, b: Motion) -> None:
     if abs(a.fps - b.fps) > _SAME_RATE * a.fps:
         raise ValueError(
             f"{path_a} and {path_b}: expected the same frame rate, got {a.fps:g} and {b.fps:g}; "
-            "--fps says what it is"
+            "if both have the same, pass it with --fps"
         )
 
 

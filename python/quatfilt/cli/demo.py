@@ -16,17 +16,17 @@ from quatfilt.formats.files import write_motion
 def demo(
     *,
     output: Annotated[
-        Path, typer.Option("--output", "-o", metavar="DIR", help="Folder to write to; made if need be.")
+        Path, typer.Option("--output", "-o", metavar="DIR", help="Folder to write to; created if missing.")
     ] = Path("quatfilt-demo"),
-    seed: Annotated[int, typer.Option(metavar="N", help="Chooses the walk and the noise.")] = 0,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the walk and the noise.")] = 0,
     seconds: Annotated[float, typer.Option(metavar="SECONDS", help="Length of the walk.")] = 8.0,
     sigma: Annotated[
         float,
         typer.Option(metavar="DEGREES", help="Deviation of the noise, per component of the rotation vector."),
     ] = 0.917,
-    json: Annotated[bool, typer.Option("--json", help="Print the result as JSON, and nothing else.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print the result as JSON only.")] = False,
 ) -> None:
-    """Add noise to a synthetic walk, clean it, and show what that does.
+    """Add noise to a synthetic walk, clean it, and measure the effect.
 
     Writes truth.bvh, noisy.bvh, denoised.bvh and, with matplotlib, denoise.png.
     """

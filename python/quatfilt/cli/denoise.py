@@ -32,39 +32,40 @@ def denoise(
     option: _steps.Options = None,
     search_radius: Annotated[
         str | None,
-        typer.Option(metavar="FRAMES|all", help="How far similar poses are looked for. [default: 10]"),
+        typer.Option(metavar="FRAMES|all", help="Search radius of similar poses. [default: 10]"),
     ] = None,
     patch_radius: Annotated[
-        int | None, typer.Option(metavar="FRAMES", help="How far around a pose is compared. [default: 5]")
+        int | None, typer.Option(metavar="FRAMES", help="Radius of the compared neighbourhood. [default: 5]")
     ] = None,
     bandwidth: Annotated[
         str | None,
         typer.Option(
             metavar="DEGREES|auto",
-            help="Differences that count as noise. [default: auto, the estimated noise]",
+            help="Size of differences that are averaged out. [default: auto, the estimated noise]",
         ),
     ] = None,
     chart: Annotated[
-        str | None, typer.Option(metavar="mean|local|identity", help="Where rotations are vectors.")
+        str | None, typer.Option(metavar="mean|local|identity", help="Chart in which rotations are vectors.")
     ] = None,
     boundary: Annotated[
         str | None,
-        typer.Option(metavar="nearest|mirror|linear", help="How the clip goes on beyond its ends."),
+        typer.Option(metavar="nearest|mirror|linear", help="Extension of the clip beyond its ends."),
     ] = None,
     weights: Annotated[
         str | None, typer.Option(metavar="pose|joint", help="Whether joints share their weights.")
     ] = None,
     distance: Annotated[
-        str | None, typer.Option(metavar="mean|sum", help="Mean over the patch, or the printed sum.")
+        str | None,
+        typer.Option(metavar="mean|sum", help="Patch distance: mean, or the sum as printed in the paper."),
     ] = None,
     neighbors: Annotated[
-        int | None, typer.Option(metavar="N", help="Only the N most similar poses count. [default: all]")
+        int | None, typer.Option(metavar="N", help="Number of most similar poses that count. [default: all]")
     ] = None,
     library: Annotated[
         list[Path] | None,
         typer.Option(
             metavar="FILE",
-            help="A clean motion of the same person to borrow similar poses from. May be given several times.",
+            help="Clean motion of the same person to take similar poses from. May be repeated.",
             show_default=False,
         ),
     ] = None,
@@ -74,7 +75,7 @@ def denoise(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="How far samples count, 0 to 1, per frame or frame and joint: .npy, .csv, .txt.",
+            help="Confidence of samples, 0 to 1, per frame or per frame and joint: .npy, .csv, .txt.",
         ),
     ] = None,
     translation: _steps.Translation = True,
@@ -84,7 +85,7 @@ def denoise(
         typer.Option(
             "--report",
             metavar="FILE|-",
-            help="What the filter did, as .png, .pdf, .svg, .json, .txt, or - for the terminal (or --json). May be given several times.",
+            help="Report of the effect: .png, .pdf, .svg, .json, .txt, or - for the terminal. May be repeated.",
             show_default=False,
         ),
     ] = None,
@@ -99,8 +100,8 @@ def denoise(
 ) -> None:
     """Clean a motion file.
 
-    By default spikes are replaced, and every joint is smoothed as much as its noise asks for. --method and --preset run
-    other filters, or several.
+    By default spikes are replaced, and every joint is smoothed as much as its noise requires. --method and --preset choose
+    other filters.
     """
     _options.use_threads(threads)
     wish = _steps.asked(
@@ -151,7 +152,7 @@ def denoise(
 
 
 def beside(path: Path) -> Path:
-    """Return where a cleaned file goes unless told."""
+    """Return the default path of a cleaned file."""
     return path.with_name(f"{path.stem}.clean{written_as(path.suffix)}")
 
 
@@ -175,7 +176,7 @@ def _say(path: Path, target: Path, cleaned: _cleaning.Cleaned) -> None:
 
 
 def _of_feet(feet: dict[str, Any]) -> str:
-    """Say how far feet slide, and by how much joints were turned to hold them."""
+    """Describe the slide of the feet and the rotation of joints that holds them."""
     done = {"keep": "kept", "lock": "locked"}[feet["placement"]]
     scaled = "" if feet["scale"] == 1 else f", lengths multiplied by {feet['scale']:.3g} for a leg of 90 cm"
     return (

@@ -1,4 +1,4 @@
-"""``quatfilt info``: what is in a file, and what is wrong with it."""
+"""``quatfilt info``: contents and defects of a file."""
 
 from typing import Any
 
@@ -21,11 +21,11 @@ def info(
     first_frame: _options.FirstFrameChoice = "auto",
     json: _options.Json = False,
 ) -> None:
-    """Show what is in a motion file, and how noisy it is.
+    """Show the contents of a motion file and its noise.
 
-    The noise of a joint is the estimated deviation per component of its rotation vector. A spike is a sample that
-    leaves both of its neighbours; a jump is a turn of more than 15 degrees in a frame at 120 frames per second. Where the
-    source did not measure every frame, its rate and frozen stretches are named.
+    The noise of a joint is the estimated deviation per component of its rotation vector. A spike is a sample far
+    from both of its neighbours; a jump is a rotation of more than 15 degrees in a frame at 120 frames per second. Where the
+    source did not measure every frame, its rate and frozen stretches are shown.
     """
     with _output.busy(f"reading {path.name}"):
         motion = _options.read(path, fps=fps, skeleton=skeleton, first_frame=first_frame)

@@ -21,18 +21,18 @@ def pga(
             "--output",
             "-o",
             metavar="PICTURE",
-            help="Where a picture goes: .png, .pdf or .svg. [default: none]",
+            help="Picture to write: .png, .pdf or .svg. [default: none]",
         ),
     ] = None,
     components: Annotated[
-        int, typer.Option("--components", "-k", metavar="N", help="How many geodesics for each joint.")
+        int, typer.Option("--components", "-k", metavar="N", help="Number of geodesics of each joint.")
     ] = 5,
     joints: Annotated[
-        str | None, typer.Option(metavar="NAME,…", help="Which joints. [default: all that move]")
+        str | None, typer.Option(metavar="NAME,…", help="Names of the joints. [default: all that move]")
     ] = None,
     objective: Annotated[
         str,
-        typer.Option(metavar="geodesic|squared|chordal", help="What a geodesic minimises."),
+        typer.Option(metavar="geodesic|squared|chordal", help="Objective that a geodesic minimises."),
     ] = "geodesic",
     fps: _options.Fps = None,
     skeleton: _options.SkeletonFile = None,
@@ -41,7 +41,7 @@ def pga(
 ) -> None:
     """Show how few angles describe each joint: its principal geodesics, and the mean angle that k of them leave.
 
-    A direction is the axis that the joint turns about, seen from its mean.
+    A direction is the axis of rotation of the joint, seen from its mean.
     """
     # SciPy would slow down every verb.
     from quatfilt.evaluation import pga_of_motion, pga_of_motion_picture  # noqa: PLC0415

@@ -20,7 +20,7 @@ from quatfilt.reconstruction.reconstructor import MotionReconstructor
 
 @dataclass(frozen=True)
 class _Given:
-    """What is to be followed."""
+    """Trajectories to follow."""
 
     joints: tuple[str, ...]
     positions: NDArray[Any]
@@ -33,7 +33,11 @@ def reconstruct(
     database: Annotated[
         Path,
         typer.Option(
-            "--database", "-d", metavar="DB", help="What quatfilt database build wrote.", show_default=False
+            "--database",
+            "-d",
+            metavar="DB",
+            help="Database file, from quatfilt database build.",
+            show_default=False,
         ),
     ],
     points: Annotated[
@@ -49,7 +53,7 @@ def reconstruct(
         typer.Option(
             "--motion",
             metavar="FILE",
-            help="Take the trajectories of a motion file instead, to try it, and measure the error against it.",
+            help="Take the trajectories from a motion file instead, for a trial, and measure the error against it.",
         ),
     ] = None,
     joints: Annotated[
@@ -74,9 +78,7 @@ def reconstruct(
             metavar="NAME", help="local_regression, local_pca, local_pcr, nearest, mean_pose or gplvm."
         ),
     ] = "local_regression",
-    neighbors: Annotated[
-        int, typer.Option(metavar="K", help="How many examples a pose is learned from.")
-    ] = 64,
+    neighbors: Annotated[int, typer.Option(metavar="K", help="Number of examples for each pose.")] = 64,
     control_noise: Annotated[
         float | None,
         typer.Option(
@@ -95,7 +97,7 @@ def reconstruct(
     """
     _options.use_threads(threads)
     if (points is None) == (motion is None):
-        raise ValueError("--points, --motion: expected one of them")
+        raise ValueError("pass either --points or --motion")
     with _output.busy("reading"):
         db = MotionDatabase.open(database)
         given = (
@@ -131,15 +133,13 @@ def reconstruct(
 
 def _of_table(path: Path | None, joints: str | None, fps: float | None) -> _Given:
     if path is None:  # one of the two is given
-        raise ValueError("--points: expected a table, got none")
+        raise ValueError("--points: the table is missing")
     if joints is not None:
-        raise ValueError("--joints: expected with --motion; the header of --points names the joints")
+        raise ValueError("--joints is for --motion only; the header of --points names the joints")
     table = _points.read(path)
     rate = table.fps if fps is None else fps
     if rate is None:
-        raise ValueError(
-            f"{path}: expected a column time in seconds, or --fps, to know how long a frame takes"
-        )
+        raise ValueError(f"{path}: the frame rate is missing; add a column time in seconds, or pass --fps")
     return _Given(table.joints, table.positions, rate)
 
 
@@ -148,7 +148,7 @@ def _of_motion(
 ) -> _Given:
     """Take the trajectories of a motion file, in the unit of the database."""
     if not joints:
-        raise ValueError("--joints: expected the control points of --motion, got none")
+        raise ValueError("--motion needs the control points: pass --joints NAME,NAME…")
     truth = _options.read(path, fps=fps, skeleton=skeleton, first_frame="auto")
     names = tuple(name.strip() for name in joints.split(","))
     _validation.joint_names(names, "--joints", db.names)

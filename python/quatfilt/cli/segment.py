@@ -15,7 +15,10 @@ def segment(
     path: _options.Input,
     *,
     window: Annotated[
-        float, typer.Option(metavar="S", help="Seconds at the beginning of a segment in which it is learnt.")
+        float,
+        typer.Option(
+            metavar="S", help="Seconds at the beginning of a segment in which its behaviour is learned."
+        ),
     ] = 2.0,
     min_length: Annotated[
         float | None,
@@ -23,9 +26,11 @@ def segment(
     ] = None,
     threshold: Annotated[
         float | None,
-        typer.Option(metavar="X", help="Standard deviations; smaller cuts more often. [default: 3]"),
+        typer.Option(metavar="X", help="Standard deviations; a smaller number makes more cuts. [default: 3]"),
     ] = None,
-    components: Annotated[int, typer.Option(metavar="1|2", help="Principal geodesics of each joint.")] = 1,
+    components: Annotated[
+        int, typer.Option(metavar="1|2", help="Number of principal geodesics of each joint.")
+    ] = 1,
     picture: Annotated[
         Path | None, typer.Option(metavar="PNG", help="Draw the cuts against the motion. Needs matplotlib.")
     ] = None,

@@ -5,7 +5,7 @@ is cut where one begins or ends, and its spans are filtered apart. A filter that
 where one of them comes or goes.
 
 Samples of confidence 0 are filled in the same way, however long they last: a filter sees nothing of them. Filters with weights of their
-own take the other confidences. For the rest `Clip.trusted` prepares the samples.
+own take the other confidences. For the rest `Clip.pulled` prepares the samples.
 """
 
 import itertools
@@ -73,13 +73,13 @@ class Clip:
         """Run a filter over each span, ``(rotations, confidence, span) -> rotations``, and finish."""
         return self.finish(self.rotations.copy() if self.unchanged else self._each(run))
 
-    def trusted(self) -> "Clip":
+    def pulled(self) -> "Clip":
         """Return the clip for a filter without weights of its own: samples gave way as far as they are not trusted."""
         if not self.weighed or self.unchanged:
             return self
 
         def run(rotations: Array, trust: Array | None, _span: Span) -> Array:
-            return rotations if trust is None else cast("Array", ops().trusted(rotations, trust))
+            return rotations if trust is None else cast("Array", ops().pulled_by_confidence(rotations, trust))
 
         return replace(self, rotations=self._each(run))
 

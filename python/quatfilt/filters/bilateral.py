@@ -151,7 +151,7 @@ def with_translation(
 
     The confidences are those of rotations: positions are trusted.
     """
-    clip = _spans.prepare(q, confidence=confidence, **missing).trusted()
+    clip = _spans.prepare(q, confidence=confidence, **missing).pulled()
     reach = _validation.integer(radius, "radius", at_least=0, at_most=_LONGEST_RADIUS)
     time = _validation.number(sigma_time, "sigma_time", above=0)
     angles = _validation.per_joint(

@@ -15,6 +15,10 @@ from quatfilt.filters.gaps import gap_frames
 _LONGEST_RADIUS = 1000
 """Frames: a run that lasts longer is no spike at any frame rate."""
 
+_REACH, _LEAST_RADIUS = 0.075, 3
+"""Seconds and frames: "auto". Runs of up to nine frames at 120 per second are judged by the motion around them; fewer neighbours than the second
+show no motion."""
+
 _DURATION = 0.375
 """Seconds: "auto". Trackers find a limb that they lost within a third of a second or not at all: 11 frames at 30 per second."""
 
@@ -35,7 +39,7 @@ a straight line."""
 def despike(
     q: ArrayLike,
     *,
-    radius: int = 3,
+    radius: int | Literal["auto"] = 3,
     threshold: PerJoint = 4.0,
     smallest: PerJoint | Literal["auto"] = "auto",
     duration: float | Literal["auto"] = "auto",
@@ -49,7 +53,7 @@ def despike(
 
     Three kinds of samples are replaced:
 
-    - spikes: runs of one or two samples, or of fewer than `radius`, that leave the motion and come back at once. They are far from where the
+    - spikes: runs of fewer samples than `radius` that leave the motion and come back at once. They are far from where the
       samples before have the joint, resting or moving on, from where those after have it, and from the way between them. Steps, fast swings,
       impacts and the first moves after a rest are none of it: one side explains them. Far is more than `threshold` times what is usual,
       the median of the same deviation around the run, and at least what noise of the joint's level makes usual; more than
@@ -65,8 +69,9 @@ def despike(
     ----------
     q : array_like, shape (frames, joints, 4) or (frames, 4)
         Unit quaternions along time. NaN or four zeros are missing samples.
-    radius : int, frames, default 3
+    radius : int, frames, or "auto", default 3
         Spikes are shorter than this, bursts are not; and so many neighbours on either side of a spike are asked. From 2 to 1000.
+        "auto", which `denoise` takes, is ``round(0.075 fps) + 1`` and at least 3: 10 at 120 frames per second; 3 where `fps` is not given.
     threshold : float or array_like (joints,), default 4.0
         How many times as far as usual a spike is. Smaller finds more.
     smallest : float or array_like (joints,), radians of rotation, or "auto", default "auto"
@@ -84,7 +89,7 @@ def despike(
     max_gap : float or None, seconds, default None
         The longest gap that is filled; None for any. Longer ones stay missing, and their sides are looked at apart.
     fps : float, hertz, default 1.0
-        Frame rate, for `max_gap`, `duration` and `smallest`; without it these count frames, and nothing is known of quick limbs.
+        Frame rate, for `max_gap`, `duration`, `radius` and `smallest`; without it these count frames, and nothing is known of quick limbs.
     scalar_first : bool, default True
         Whether quaternions are ``(w, x, y, z)``; False for SciPy's ``(x, y, z, w)``.
 
@@ -145,7 +150,7 @@ def with_translation(
     q: ArrayLike,
     translation: Array | None,
     *,
-    radius: int,
+    radius: int | Literal["auto"],
     threshold: PerJoint,
     smallest: PerJoint | Literal["auto"],
     duration: float | Literal["auto"],
@@ -172,7 +177,7 @@ def with_translation(
 def spikes(
     q: ArrayLike,
     *,
-    radius: int = 3,
+    radius: int | Literal["auto"] = 3,
     threshold: PerJoint = 4.0,
     smallest: PerJoint | Literal["auto"] = "auto",
     duration: float | Literal["auto"] = "auto",
@@ -303,13 +308,16 @@ class _Limits:
 def _limits(
     clip: _spans.Clip,
     *,
-    radius: int,
+    radius: int | Literal["auto"],
     threshold: PerJoint,
     smallest: PerJoint | Literal["auto"],
     duration: float | Literal["auto"],
     fps: float,
 ) -> _Limits:
     rate = _validation.number(fps, "fps", above=0)
+    if isinstance(radius, str):
+        _validation.known(radius, "radius", ("auto",), "'auto' or a number of frames")
+        radius = min(max(round(_REACH * rate) + 1, _LEAST_RADIUS), _LONGEST_RADIUS)
     if isinstance(duration, str):
         _validation.known(duration, "duration", ("auto",), "'auto' or a number of seconds")
         duration = _DURATION if rate > 1 else 0.0

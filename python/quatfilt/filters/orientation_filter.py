@@ -116,7 +116,7 @@ def with_translation(
 
     The confidences are those of rotations: positions are trusted.
     """
-    clip = _spans.prepare(q, confidence=confidence, **missing).trusted()
+    clip = _spans.prepare(q, confidence=confidence, **missing).pulled()
     options = (
         _validation.mask(mask, "mask"),
         _validation.integer(iterations, "iterations", at_least=1),

@@ -22,7 +22,7 @@ mod _core {
     #[pymodule_export]
     use super::filters::butterworth::butterworth;
     #[pymodule_export]
-    use super::filters::confidence::trusted;
+    use super::filters::confidence::pulled_by_confidence;
     #[pymodule_export]
     use super::filters::despike::{find_spikes, find_swaps};
     #[pymodule_export]

@@ -12,7 +12,7 @@ from quatfilt import _core, _reference
 
 def agree(q, confidence):
     before = q.tobytes(), confidence.tobytes()
-    result, expected = (backend.trusted(q, confidence) for backend in (_core, _reference))
+    result, expected = (backend.pulled_by_confidence(q, confidence) for backend in (_core, _reference))
     assert (q.tobytes(), confidence.tobytes()) == before, "an input was written"
     same_samples(result, expected, tolerances.filtered(q.dtype))
 

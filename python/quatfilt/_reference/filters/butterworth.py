@@ -44,7 +44,7 @@ def butterworth(
 
     def smooth(columns: Columns, joint: int) -> Reals:
         beyond = min(padding, len(q) - 1)
-        extended = turned_about_ends(columns.trusted(), beyond)
+        extended = turned_about_ends(columns.pulled(), beyond)
         forwards = run_sections(extended, sections[joint], states[joint])
         backwards = run_sections(forwards[::-1], sections[joint], states[joint])[::-1]
         return backwards[beyond : beyond + len(q)]

@@ -15,7 +15,7 @@ RADIUS = 8
 """Frames: how far surroundings reach, four deviations."""
 
 
-def trusted(q: Reals, confidence: Reals) -> Reals:
+def pulled_by_confidence(q: Reals, confidence: Reals) -> Reals:
     """Replace samples as far as they are not trusted.
 
     Samples of confidence 0 are missing ones: they are filled in along the geodesics between the others. Samples of a

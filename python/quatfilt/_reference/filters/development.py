@@ -233,7 +233,7 @@ class Columns:
     trust: Reals | None
     """The samples' confidence, `(frames,)`."""
 
-    def trusted(self) -> Reals:
+    def pulled(self) -> Reals:
         """Return the vectors, pulled towards their local mean by as much as they are not trusted."""
         if self.trust is None:
             return self.vectors

@@ -7,8 +7,8 @@ Systems*, CHI 2012.
 import numpy as np
 
 from quatfilt._reference._arrays import Reals
+from quatfilt._reference.filters.displacements import displacement_between, moved
 from quatfilt._reference.filters.nonlocal_pose_means.nonlocal_pose_means import in_hemisphere_of
-from quatfilt._reference.filters.ways import moved, way_between
 from quatfilt._reference.rotations.quaternion import norm, normalize
 
 
@@ -75,10 +75,10 @@ def one_euro(
             share = 0.0
             if c > 0:
                 elapsed = frame - before
-                turned = way_between(samples[before, joint], samples[frame, joint]) / elapsed
+                turned = displacement_between(samples[before, joint], samples[frame, joint]) / elapsed
                 velocity = velocity + c * low_pass(derivative_cutoff[joint], elapsed) * (turned - velocity)
                 share = c * low_pass(min_cutoff[joint] + beta[joint] * norm(velocity), elapsed)
-                x = moved(x, share * way_between(x, samples[frame, joint]))
+                x = moved(x, share * displacement_between(x, samples[frame, joint]))
                 before = frame
             result[frame, joint] = x
             if joint == 0 and position is not None:

@@ -48,7 +48,7 @@ def savgol(
     """
 
     def smooth(columns: Columns, _joint: int) -> Reals:
-        return fitted(columns.trusted(), fit, values)
+        return fitted(columns.pulled(), fit, values)
 
     return filtered(q, translation, confidence, reference_sigma, smooth)
 
@@ -91,7 +91,7 @@ def fitted_joints(
     for joint in range(vectors.shape[1]):
         trust = None if confidence is None else confidence[:, joint].astype(np.float64)
         columns = Columns(vectors[:, joint], development[:, joint], trust)
-        result[:, joint] = fitted(columns.trusted(), fit, values)
+        result[:, joint] = fitted(columns.pulled(), fit, values)
     return result
 
 

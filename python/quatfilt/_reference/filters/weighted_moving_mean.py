@@ -36,7 +36,7 @@ def weighted_moving_mean(
     """
 
     def smooth(columns: Columns, _joint: int) -> Reals:
-        result = columns.trusted()
+        result = columns.pulled()
         for _ in range(iterations):
             result = smoothed_keys(result)
         return result

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from quatfilt._reference.reconstruction.frame import HORIZONTAL, heading, turn, turned
+from quatfilt._reference.reconstruction.frame import HORIZONTAL, heading, rotated, rotation_about
 from quatfilt._reference.reconstruction.kinematics import Floats
 from quatfilt._reference.rotations.quaternion import between, exp, log_short, multiply, normalize
 
@@ -21,7 +21,7 @@ class Poses(NamedTuple):
         Headings of the root, radians.
     translation : array (poses, 3)
         Positions of the root, in the size of the body that is reconstructed.
-    trails : array (poses, points, 3)
+    trajectories : array (poses, points, 3)
         Positions of the control points.
     starts : array (clips + 1,) of int64
         The first pose of each clip, and the number of poses.
@@ -40,7 +40,7 @@ class Poses(NamedTuple):
     rotations: NDArray[np.float32]
     heading: NDArray[np.float32]
     translation: NDArray[np.float32]
-    trails: NDArray[np.float32]
+    trajectories: NDArray[np.float32]
     starts: NDArray[np.int64]
     features: NDArray[np.float32]
     mean_rotations: Floats
@@ -62,7 +62,7 @@ class Poses(NamedTuple):
         return np.concatenate(ranges).astype(np.intp)
 
 
-class Sight(NamedTuple):
+class Observations(NamedTuple):
     """Control points of some frames, the last of them the one in question.
 
     Parameters
@@ -98,7 +98,7 @@ class Fit(NamedTuple):
     shift: Floats
 
 
-def fit(poses: Poses, candidates: NDArray[np.intp], sight: Sight, up: int) -> Fit:
+def fit(poses: Poses, candidates: NDArray[np.intp], observations: Observations, up: int) -> Fit:
     """Turn each candidate about the up axis, and move it on the ground, to where its control points fit best.
 
     With the level coordinates as complex numbers, `z_i` of the points of an example and of the frames before it and `c_i`
@@ -106,15 +106,15 @@ def fit(poses: Poses, candidates: NDArray[np.intp], sight: Sight, up: int) -> Fi
     `Σ w |z_i|² + Σ w |c_i|² − 2 |Σ w z̄_i c_i|` and the squared differences in height.
     """
     first, second = HORIZONTAL[up]
-    weights = sight.weights.reshape(-1)
+    weights = observations.weights.reshape(-1)
     total = weights.sum()
     if total == 0:
         none = np.zeros(len(candidates))
         return Fit(none, none, np.zeros((len(candidates), 2)))
     share = weights / total
-    points = poses.trails[candidates[:, None] - sight.lags].astype(np.float64)
+    points = poses.trajectories[candidates[:, None] - observations.lags].astype(np.float64)
     points = points.reshape(len(candidates), -1, 3)
-    seen = np.where(sight.weights[..., None] > 0, sight.positions, 0).reshape(-1, 3)
+    seen = np.where(observations.weights[..., None] > 0, observations.positions, 0).reshape(-1, 3)
     z, c = points[..., first] + 1j * points[..., second], seen[:, first] + 1j * seen[:, second]
     z_mean, c_mean = z @ share, c @ share
     z, c = z - z_mean[:, None], c - c_mean
@@ -144,12 +144,12 @@ class State(NamedTuple):
     heading: float
 
 
-def begin(poses: Poses, sight: Sight, up: int, order: int, before: int, stride: int) -> State:
+def begin(poses: Poses, observations: Observations, up: int, order: int, before: int, stride: int) -> State:
     """Take what came before from the pose that fits the control points best, where it fits best.
 
     Parameters
     ----------
-    poses, sight, up
+    poses, observations, up
         The database, the control points and the up axis.
     order : int
         How many poses are wanted.
@@ -159,13 +159,13 @@ def begin(poses: Poses, sight: Sight, up: int, order: int, before: int, stride: 
         Every which pose of a clip may be an example.
     """
     candidates = poses.candidates(before, stride)
-    found = fit(poses, candidates, sight, up)
+    found = fit(poses, candidates, observations, up)
     best = int(np.argmin(found.distance))
     last = int(candidates[best]) - 1
     angle = float(found.turn[best])
     first, second = HORIZONTAL[up]
     there = poses.translation[last].astype(np.float64)
-    place = turned(there[[first, second]], angle, up)
+    place = rotated(there[[first, second]], angle, up)
     place[[first, second]] += found.shift[best]
     place[up] = there[up]
     recent = poses.rotations[last - order + 1 : last + 1].astype(np.float64)
@@ -176,7 +176,7 @@ def follow(state: State, rotations: Floats, position: Floats, up: int) -> State:
     """Return what is known after one more frame: `rotations` with the root's heading, and its position."""
     angle = float(heading(rotations[0], up))
     rest = rotations.copy()
-    rest[0] = multiply(turn(-angle, up), rotations[0])
+    rest[0] = multiply(rotation_about(-angle, up), rotations[0])
     return State(np.concatenate([state.recent[1:], rest[None]]), position, angle)
 
 
@@ -184,7 +184,7 @@ def nearest(
     poses: Poses,
     candidates: NDArray[np.intp],
     state: State,
-    sight: Sight,
+    observations: Observations,
     up: int,
     count: int,
     spacing: int,
@@ -202,7 +202,7 @@ def nearest(
         difference = poses.features[candidates - lag].astype(np.float64) - poses.feature(pose)
         squares += np.sum(difference**2, axis=1) / order
     if np.isfinite(scale):
-        squares += fit(poses, candidates, sight, up).distance / scale**2
+        squares += fit(poses, candidates, observations, up).distance / scale**2
     found: list[int] = []
     free = np.ones(len(poses.heading), bool)
     clip = np.searchsorted(poses.starts, np.arange(len(free)), side="right")
@@ -215,7 +215,7 @@ def nearest(
     return candidates[found], squares[found]
 
 
-def ways(poses: Poses, examples: NDArray[np.intp], up: int) -> Floats:
+def root_steps(poses: Poses, examples: NDArray[np.intp], up: int) -> Floats:
     """How the roots of examples came to their poses: step along two axes of the heading before, height, turn; `(K, 4)`."""
     first, second = HORIZONTAL[up]
     here, before = (poses.translation[at].astype(np.float64) for at in (examples, examples - 1))
@@ -238,7 +238,7 @@ BESIDE = 0.5
 than examples do, and what is peculiar to one says nothing about the others."""
 
 
-def within(segments: Floats, recent: Floats, weights: Floats) -> Floats:
+def shrunk(segments: Floats, recent: Floats, weights: Floats) -> Floats:
     """Bring the last poses back among those of the examples, `(m, joints, 4)`.
 
     A pose that lies farther from the mean of the examples' poses of that frame than `BESIDE` times as these do, root mean square

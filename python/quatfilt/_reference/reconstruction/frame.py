@@ -20,14 +20,14 @@ def heading(q: Reals, up: int) -> Reals:
     return wrapped
 
 
-def turn(angle: float, up: int) -> NDArray[np.float64]:
+def rotation_about(angle: float, up: int) -> NDArray[np.float64]:
     """Quaternion of a turn about the up axis by an angle in radians."""
     q = np.zeros(4)
     q[0], q[1 + up] = np.cos(angle / 2), np.sin(angle / 2)
     return q
 
 
-def turned(step: Reals, angle: float, up: int) -> NDArray[np.float64]:
+def rotated(step: Reals, angle: float, up: int) -> NDArray[np.float64]:
     """Turn a step (along the two level axes) by a heading: 3 components."""
     first, second = HORIZONTAL[up]
     c, s = np.cos(angle), np.sin(angle)

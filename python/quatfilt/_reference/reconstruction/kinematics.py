@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from quatfilt._reference._arrays import Reals
 from quatfilt._reference.motion.skeleton import rotate
-from quatfilt._reference.reconstruction.frame import turn, turned
+from quatfilt._reference.reconstruction.frame import rotated, rotation_about
 from quatfilt._reference.rotations.quaternion import exp, multiply
 
 Floats = Reals
 """Arrays of float64, as far as the type checker follows them."""
 
-WAY = 4
+ROOT = 4
 """Coordinates of the root's way: two of its step, its height, its turn."""
 
 
@@ -87,8 +87,8 @@ def pose(base: Base, x: Floats, up: int) -> tuple[Floats, Floats]:
     joints = len(base.centres)
     rotations = multiply(base.centres, exp(x[: 3 * joints].reshape(joints, 3) / 2))
     step, height, angle = x[3 * joints : 3 * joints + 2], x[3 * joints + 2], x[3 * joints + 3]
-    rotations[0] = multiply(turn(base.heading + angle, up), rotations[0])
-    position = base.place + turned(step, base.heading, up)
+    rotations[0] = multiply(rotation_about(base.heading + angle, up), rotations[0])
+    position = base.place + rotated(step, base.heading, up)
     position[up] = height
     return rotations, position
 
@@ -98,7 +98,7 @@ def control_points(body: Body, base: Base, x: Floats) -> Points:
 
     A joint that turns by `ω` moves what hangs below it by `ω × (place − joint)`. With the joint's global rotation `g` and
     its coordinates `x_j`, a rotation vector, `ω = g J(x_j) dx_j`, where `J` is the right Jacobian of the rotation group
-    (`turning`).
+    (`right_jacobian`).
     """
     joints = len(body.parents)
     rotations, root = pose(base, x, body.up)
@@ -112,27 +112,27 @@ def control_points(body: Body, base: Base, x: Floats) -> Points:
     rows = Points(
         places[body.points],
         turns[body.points],
-        np.zeros((count, 3, 3 * joints + WAY)),
-        np.zeros((count, 3, 3 * joints + WAY)),
+        np.zeros((count, 3, 3 * joints + ROOT)),
+        np.zeros((count, 3, 3 * joints + ROOT)),
     )
     axis = np.eye(3)[body.up]
     for i, point in enumerate(body.points):
         joint = int(point)
         while joint >= 0:
             columns = slice(3 * joint, 3 * joint + 3)
-            spin = matrix(turns[joint]) @ turning(x[columns])
+            spin = matrix(turns[joint]) @ right_jacobian(x[columns])
             rows.orientation_rows[i, :, columns] = spin
             rows.position_rows[i, :, columns] = np.cross(spin, places[point] - places[joint], axis=0)
             joint = int(body.parents[joint])
         rows.orientation_rows[i, :, 3 * joints + 3] = axis
         rows.position_rows[i, :, 3 * joints + 3] = np.cross(axis, places[point] - places[0])
         for column, step in enumerate(np.eye(2)):
-            rows.position_rows[i, :, 3 * joints + column] = turned(step, base.heading, body.up)
+            rows.position_rows[i, :, 3 * joints + column] = rotated(step, base.heading, body.up)
         rows.position_rows[i, body.up, 3 * joints + 2] = 1
     return rows
 
 
-def turning(v: Floats) -> Floats:
+def right_jacobian(v: Floats) -> Floats:
     """Right Jacobian of the rotation group at the rotation vector `v`: `exp(v + dv) ≈ exp(v) exp(J dv)`; 3 × 3.
 
     `J = 1 − (1 − cos θ)/θ² [v] + (θ − sin θ)/θ³ [v]²`, `[v]` the matrix of `v ×`.

@@ -3,13 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from quatfilt._reference.reconstruction.examples import Poses, Sight, State, fit, ways
+from quatfilt._reference.reconstruction.examples import Observations, Poses, State, fit, root_steps
 from quatfilt._reference.reconstruction.frame import HORIZONTAL
 from quatfilt._reference.reconstruction.kinematics import Floats
 
 
 def signals(
-    poses: Poses, examples: NDArray[np.intp], state: State, sight: Sight, up: int, scale: float
+    poses: Poses, examples: NDArray[np.intp], state: State, observations: Observations, up: int, scale: float
 ) -> tuple[Floats, Floats]:
     """Lay examples on the control points (`fit`), and tell what is left between them and how the roots come there.
 
@@ -17,7 +17,7 @@ def signals(
     points add to the squared distance of the example (`nearest`).
 
     Where the points lie less than `scale` from their middle as seen from above, root mean square, they do not tell a heading, and
-    roots come as they came in the database (`ways`), from the last pose on. With an infinite scale, or where nothing is seen, that
+    roots come as they came in the database (`root_steps`), from the last pose on. With an infinite scale, or where nothing is seen, that
     is all there is.
 
     Parameters
@@ -28,7 +28,7 @@ def signals(
         The examples' next poses.
     state : State
         The last poses.
-    sight : Sight
+    observations : Observations
         The control points.
     up : int
         The up axis.
@@ -42,18 +42,18 @@ def signals(
     ways : array (K, 4)
         Step along two axes of the last heading, height, turn.
     """
-    weights = sight.weights.reshape(-1)
+    weights = observations.weights.reshape(-1)
     if weights.sum() == 0 or not np.isfinite(scale):
-        return np.zeros((len(examples), 0)), ways(poses, examples, up)
+        return np.zeros((len(examples), 0)), root_steps(poses, examples, up)
     first, second = HORIZONTAL[up]
     marks = weights > 0
     share = weights[marks] / weights.sum()
-    seen = sight.positions.reshape(-1, 3)[marks]
-    points = poses.trails[examples[:, None] - sight.lags].astype(np.float64)
+    seen = observations.positions.reshape(-1, 3)[marks]
+    points = poses.trajectories[examples[:, None] - observations.lags].astype(np.float64)
     points = points.reshape(len(examples), -1, 3)[:, marks]
     c = seen[:, first] + 1j * seen[:, second]
 
-    found = fit(poses, examples, sight, up)
+    found = fit(poses, examples, observations, up)
     turns, shifts = np.exp(1j * found.turn), found.shift[:, 0] + 1j * found.shift[:, 1]
     back = np.exp(-1j * state.heading)
     level = (turns[:, None] * (points[..., first] + 1j * points[..., second]) + shifts[:, None] - c) * back
@@ -61,7 +61,7 @@ def signals(
     differences = (np.sqrt(len(state.recent) * share) / scale)[:, None] * left
     differences = differences.reshape(len(examples), -1)
     if np.sum(share * np.abs(c - c @ share) ** 2) <= scale**2:
-        return differences, ways(poses, examples, up)
+        return differences, root_steps(poses, examples, up)
 
     here = poses.translation[examples].astype(np.float64)
     root = turns * (here[:, first] + 1j * here[:, second]) + shifts

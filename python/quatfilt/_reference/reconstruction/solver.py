@@ -13,7 +13,7 @@ from quatfilt._reference.reconstruction.kinematics import (
     control_points,
     matrix,
     pose,
-    turning,
+    right_jacobian,
 )
 from quatfilt._reference.rotations.quaternion import between, log_short
 
@@ -175,7 +175,7 @@ def errors(body: Body, base: Base, targets: Targets, x: Floats) -> tuple[Floats,
     for i in seen(targets.orientation_deviations):
         vector = 2 * log_short(between(targets.orientations[i], points.orientations[i]))
         turns = np.linalg.solve(
-            turning(vector), matrix(points.orientations[i]).T @ points.orientation_rows[i]
+            right_jacobian(vector), matrix(points.orientations[i]).T @ points.orientation_rows[i]
         )
         values.append(vector / targets.orientation_deviations[i])
         rows.append(turns / targets.orientation_deviations[i])

@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from quatfilt._reference.reconstruction.examples import (
+    Observations,
     Poses,
-    Sight,
     State,
     begin,
     follow,
     nearest,
-    within,
+    shrunk,
 )
-from quatfilt._reference.reconstruction.kinematics import WAY, Base, Body, Floats, pose
+from quatfilt._reference.reconstruction.kinematics import ROOT, Base, Body, Floats, pose
 from quatfilt._reference.reconstruction.local_models.predict import predict_pose
 from quatfilt._reference.reconstruction.signals import signals
 from quatfilt._reference.reconstruction.solver import Prior, Targets, energy, solve
@@ -91,30 +91,32 @@ class Search:
         """Forget the frames before."""
         self.since = math.inf
 
-    def next(self, state: State, sight: Sight) -> NDArray[np.intp]:
+    def next(self, state: State, observations: Observations) -> NDArray[np.intp]:
         """Find the examples of the next frame, nearest first."""
         how = self.how
         every = self.poses.candidates(history(how), how.stride)
         graph = self.poses.graph
-        trusted = False
+        kept = False
         if graph is not None and self.since < how.refresh:
-            found, squares = self._among(self._around(every, graph), state, sight)
-            trusted = len(found) == how.neighbors and (
+            found, squares = self._among(self._around(every, graph), state, observations)
+            kept = len(found) == how.neighbors and (
                 math.isinf(how.ratio) or math.sqrt(squares[-1]) <= how.ratio * self.least
             )
-        if not trusted:
-            found, squares = self._among(every, state, sight)
+        if not kept:
+            found, squares = self._among(every, state, observations)
         last = math.sqrt(squares[-1])
-        self.least = min(self.least, last) if trusted else last
-        self.since = self.since + 1 if trusted else 0
+        self.least = min(self.least, last) if kept else last
+        self.since = self.since + 1 if kept else 0
         self.before = found
         return found
 
     def _among(
-        self, candidates: NDArray[np.intp], state: State, sight: Sight
+        self, candidates: NDArray[np.intp], state: State, observations: Observations
     ) -> tuple[NDArray[np.intp], Floats]:
         how = self.how
-        return nearest(self.poses, candidates, state, sight, self.up, how.neighbors, how.spacing, how.scale)
+        return nearest(
+            self.poses, candidates, state, observations, self.up, how.neighbors, how.spacing, how.scale
+        )
 
     def _around(self, every: NDArray[np.intp], graph: NDArray[np.int32]) -> NDArray[np.intp]:
         poses = np.concatenate([self.before, self.before + 1])
@@ -180,7 +182,7 @@ def track(
     weights = np.where(np.isfinite(position_deviations), 1 / position_deviations**2, 0)
     for frame in range(len(positions)):
         lags = how.window[how.window <= frame]
-        sight = Sight(positions[frame - lags], weights[frame - lags], lags)
+        observations = Observations(positions[frame - lags], weights[frame - lags], lags)
         seen = Targets(
             positions[frame],
             position_deviations[frame],
@@ -189,10 +191,10 @@ def track(
         )
         missing = not np.isfinite(seen.position_deviations).any()
         if state is None or (blind >= how.patience and not missing):
-            state = begin(database, sight, up, how.order, history(how), how.stride)
+            state = begin(database, observations, up, how.order, history(how), how.stride)
             search.reset()
         blind = blind + 1 if missing else 0
-        q, place, parts = next_pose(body, search, state, sight, seen)
+        q, place, parts = next_pose(body, search, state, observations, seen)
         state = follow(state, q, place, up)
         rotations.append(q)
         translation.append(place)
@@ -211,23 +213,23 @@ def history(how: Options) -> int:
 
 
 def next_pose(
-    body: Body, search: Search, state: State, sight: Sight, seen: Targets
+    body: Body, search: Search, state: State, observations: Observations, seen: Targets
 ) -> tuple[Floats, Floats, tuple[float, float]]:
     """Find the most probable pose of the next frame, and the two parts of its energy."""
     poses, how = search.poses, search.how
-    found = search.next(state, sight)
+    found = search.next(state, observations)
     segments = poses.rotations[found[:, None] + np.arange(-how.order, 1)].astype(np.float64)
-    differences, roots = signals(poses, found, state, sight, body.up, how.scale)
+    differences, roots = signals(poses, found, state, observations, body.up, how.scale)
     chart, mean, deviation, axes = predict_pose(
         segments,
         roots,
         differences,
-        within(segments, state.recent, poses.joint_weights),
+        shrunk(segments, state.recent, poses.joint_weights),
         poses.joint_weights,
         *how.model,
     )
     joints = len(body.parents)
-    floor = np.concatenate([np.full(3 * joints, how.floor[0]), how.floor[-WAY:]])
+    floor = np.concatenate([np.full(3 * joints, how.floor[0]), how.floor[-ROOT:]])
     prior = Prior(mean, np.sqrt(deviation**2 + floor**2), axes)
     base = Base(chart, state.place, state.heading)
     example = np.concatenate([2 * log_short(between(chart, segments[0, -1])).reshape(-1), roots[0]])

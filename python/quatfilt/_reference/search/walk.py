@@ -46,13 +46,13 @@ class SegmentWalk:
             self._since = math.inf
             return self._written(np.zeros(0, np.intp)), np.full(self.k, np.inf, query.dtype), False
         found: tuple[Indices, Reals] = np.zeros(0, np.intp), np.zeros(0)
-        trusted = False
+        kept = False
         if self.graph is not None and self._since < self.refresh:
             found = self._walk(self.graph, query, first, last)
-            trusted = len(found[0]) >= self.k and (
+            kept = len(found[0]) >= self.k and (
                 math.isinf(self.ratio) or math.sqrt(found[1][self.k - 1]) <= self.ratio * self._least
             )
-        if not trusted:
+        if not kept:
             excluded = np.array([[first, last]])
             indices, _ = nearest_segments(
                 self.features, self.starts, query[None], self.breadth, self.successors, excluded
@@ -62,12 +62,12 @@ class SegmentWalk:
         ends, squares = found
         if len(ends) >= self.k:
             last_of_them = math.sqrt(squares[self.k - 1])
-            self._least = min(self._least, last_of_them) if trusted else last_of_them
-        self._since = self._since + 1 if trusted else 0
+            self._least = min(self._least, last_of_them) if kept else last_of_them
+        self._since = self._since + 1 if kept else 0
         self._before = ends.tolist()
         distances = np.full(self.k, np.inf, query.dtype)
         distances[: len(ends)] = np.sqrt(squares[: self.k])
-        return self._written(ends), distances, not trusted
+        return self._written(ends), distances, not kept
 
     def reset(self) -> None:
         """Forget the frames before."""

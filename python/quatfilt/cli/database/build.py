@@ -33,9 +33,7 @@ def build(
     *,
     output: Annotated[
         Path,
-        typer.Option(
-            "--output", "-o", metavar="DB", help="Where the database is written.", show_default=False
-        ),
+        typer.Option("--output", "-o", metavar="DB", help="Database file to write.", show_default=False),
     ],
     fps: Annotated[
         float, typer.Option("--fps", metavar="HZ", help="Frames per second of the database.")
@@ -43,11 +41,11 @@ def build(
     mirror: Annotated[
         bool, typer.Option("--mirror", help="Add the mirror image of every clip, left and right exchanged.")
     ] = False,
-    up: Annotated[str, typer.Option("--up", metavar="x|y|z", help="The vertical: y, in AMASS z.")] = "y",
+    up: Annotated[str, typer.Option("--up", metavar="x|y|z", help="Vertical axis: y, or z for AMASS.")] = "y",
     source_fps: Annotated[
         float | None,
         typer.Option(
-            "--source-fps", metavar="HZ", help="Frames per second of the files, instead of what they say."
+            "--source-fps", metavar="HZ", help="Frames per second of the files, instead of the rate in them."
         ),
     ] = None,
     skip_others: Annotated[
@@ -71,14 +69,16 @@ def build(
     workers: Annotated[
         int | None,
         typer.Option(
-            "--workers", metavar="N", help="How many files are read at once. [default: one per processor]"
+            "--workers",
+            metavar="N",
+            help="Number of files that are read at once. [default: one per processor]",
         ),
     ] = None,
     graph: Annotated[
         bool,
         typer.Option(
             "--graph",
-            help="Find the neighbours of each pose too; it takes a few minutes for a million poses.",
+            help="Add the graph of neighbours; it takes a few minutes for a million poses.",
         ),
     ] = False,
     json: _options.Json = False,

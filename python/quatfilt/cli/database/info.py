@@ -20,7 +20,7 @@ def info(
     ] = False,
     json: _options.Json = False,
 ) -> None:
-    """Show what is in a motion database."""
+    """Show the contents of a motion database."""
     with _output.busy(f"reading {path.name}"):
         db = MotionDatabase.open(path, verify=verify)
     if json:

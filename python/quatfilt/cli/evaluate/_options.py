@@ -18,14 +18,16 @@ Data: TypeAlias = Annotated[
         metavar="DIR", help="Folder of CMU's recordings, at any depth. [default: the built-in synthetic walk]"
     ),
 ]
-Seeds: TypeAlias = Annotated[int, typer.Option(metavar="N", help="How many noises of each kind.")]
+Seeds: TypeAlias = Annotated[
+    int, typer.Option(metavar="N", help="Number of random seeds of each kind of noise.")
+]
 Output: TypeAlias = Annotated[
-    Path, typer.Option("--output", "-o", metavar="DIR", help="Where the results go.")
+    Path, typer.Option("--output", "-o", metavar="DIR", help="Folder of the results.")
 ]
 Workers: TypeAlias = Annotated[
-    int | None, typer.Option(metavar="N", help="How many processes compute. [default: one per processor]")
+    int | None, typer.Option(metavar="N", help="Number of processes. [default: one per processor]")
 ]
-Json: TypeAlias = Annotated[bool, typer.Option("--json", help="Print the results as JSON, and nothing else.")]
+Json: TypeAlias = Annotated[bool, typer.Option("--json", help="Print the results as JSON only.")]
 
 RESULTS = Path("docs/results")
 

@@ -53,7 +53,7 @@ class Folders:
                 found.setdefault(path, name)
         if not found:
             names = ", ".join(map(str, places)) or "folders"
-            raise ValueError(f"{names}: expected motion files ({listed(READABLE)}), got none")
+            raise ValueError(f"{names}: no motion files ({listed(READABLE)}) found")
         self._found = list(found.items())
         self._fps = source_fps
         self._skip_others = skip_others

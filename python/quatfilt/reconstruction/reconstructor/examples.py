@@ -52,7 +52,7 @@ class Examples:
         return np.ascontiguousarray(db.translation * scale[:, None], np.float32)
 
     @cached_property
-    def trails(self) -> NDArray[np.float32]:
+    def trajectories(self) -> NDArray[np.float32]:
         """Positions of the control points; shape (poses, points, 3)."""
         return np.concatenate(
             [
@@ -76,7 +76,7 @@ class Examples:
     def extents(self, used: Mask) -> NDArray[np.float64]:
         """Return how far some of the control points are from their middle, and above the ground, in poses all over the database."""
         step = max(1, len(self.database) // POSES_MEASURED)
-        return extents(self.trails[::step, used], self.database.up)
+        return extents(self.trajectories[::step, used], self.database.up)
 
     @cached_property
     def tables(self) -> Any:
@@ -91,7 +91,7 @@ class Examples:
             db.rotations,
             db.heading,
             self.translation,
-            self.trails,
+            self.trajectories,
             db.starts,
             db.features,
             db.mean_rotations,

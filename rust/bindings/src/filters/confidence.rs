@@ -8,7 +8,7 @@ use quatfilt_core::filters::confidence;
 /// Rotations `(frames, joints, 4)` whose samples gave way as far as they are not trusted, by `(frames, joints)`.
 #[pyfunction]
 #[pyo3(signature = (q, confidence, /))]
-pub(crate) fn trusted(
+pub(crate) fn pulled_by_confidence(
     py: Python<'_>,
     q: &Bound<'_, PyAny>,
     confidence: &Bound<'_, PyAny>,
@@ -21,7 +21,7 @@ pub(crate) fn trusted(
             let trust = elements("confidence", &trust)?;
             let mut out = out.readwrite();
             let out = clip_mut(&mut out, q.frames(), q.joints())?;
-            run(py, || confidence::trusted(q, trust, out))?;
+            run(py, || confidence::pulled_by_confidence(q, trust, out))?;
         }
         Ok(out.into_any().unbind())
     })

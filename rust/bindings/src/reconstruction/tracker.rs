@@ -9,17 +9,17 @@ use pyo3::prelude::*;
 use pyo3::types::PyType;
 use quatfilt_core::Error;
 use quatfilt_core::parallel::Interrupt;
-use quatfilt_core::reconstruction::kinematics::{Body, WAY};
+use quatfilt_core::reconstruction::kinematics::{Body, ROOT};
 use quatfilt_core::reconstruction::solver::Targets;
 use quatfilt_core::reconstruction::tracker::{Options, Poses, State, Tables, Tracker};
 use quatfilt_core::search::poses::graph::Graph;
-use quatfilt_core::search::poses::walk::Trust;
+use quatfilt_core::search::poses::walk::Fallback;
 use std::sync::{Arc, Mutex, TryLockError};
 
 /// Nanoseconds that a frame takes beside the search, by which it is decided whether to listen for Ctrl-C.
 const FRAME: usize = 500_000;
 
-/// The arrays of a database: rotations, heading, translation, trails, starts, features, mean rotations, joint weights, the graph or
+/// The arrays of a database: rotations, heading, translation, trajectories, starts, features, mean rotations, joint weights, the graph or
 /// none, and the tables that trackers share, or none.
 type Arrays<'py> = (
     Bound<'py, PyAny>,
@@ -58,7 +58,7 @@ fn tables(poses: &Arrays<'_>) -> Arc<Tables> {
 }
 
 /// Order, neighbors, stride, spacing, window, scale, patience, floor, steps, refresh and ratio.
-type How = (usize, usize, usize, usize, Vec<usize>, f64, usize, [f64; 1 + WAY], usize, usize, f64);
+type OptionsTuple = (usize, usize, usize, usize, Vec<usize>, f64, usize, [f64; 1 + ROOT], usize, usize, f64);
 
 /// Model, target, deviation, bandwidth, ridge, share.
 type Model = (String, String, String, f64, f64, f64);
@@ -83,7 +83,7 @@ impl<'py> Borrowed<'py> {
             rotations,
             heading,
             translation,
-            trails,
+            trajectories,
             starts,
             features,
             mean_rotations,
@@ -96,7 +96,7 @@ impl<'py> Borrowed<'py> {
                 input("rotations", rotations)?,
                 input("heading", heading)?,
                 input("translation", translation)?,
-                input("trails", trails)?,
+                input("trajectories", trajectories)?,
                 input("features", features)?,
             ],
             starts: input("starts", starts)?,
@@ -107,12 +107,12 @@ impl<'py> Borrowed<'py> {
     }
 
     fn poses(&self) -> PyResult<Poses<'_>> {
-        let [rotations, heading, translation, trails, features] = &self.small;
+        let [rotations, heading, translation, trajectories, features] = &self.small;
         Ok(Poses {
             rotations: elements("rotations", rotations)?,
             heading: elements("heading", heading)?,
             translation: elements("translation", translation)?,
-            trails: elements("trails", trails)?,
+            trajectories: elements("trajectories", trajectories)?,
             starts: elements("starts", &self.starts)?,
             features: elements("features", features)?,
             mean_rotations: elements("mean_rotations", &self.mean_rotations)?,
@@ -133,12 +133,12 @@ fn graph<'a>(array: &'a PyReadonlyArrayDyn<'_, i32>) -> PyResult<Graph<'a>> {
 /// A tracker of a body, with its options.
 fn tracker(
     body: Body,
-    how: How,
+    tuple: OptionsTuple,
     model: &Model,
     initial: Option<Initial<'_>>,
     tables: Arc<Tables>,
 ) -> PyResult<Tracker> {
-    let (order, neighbors, stride, spacing, window, scale, patience, floor, steps, frames, ratio) = how;
+    let (order, neighbors, stride, spacing, window, scale, patience, floor, steps, frames, ratio) = tuple;
     let (name, target, deviation, bandwidth, ridge, share) = model;
     let model = local_models::options(name, target, deviation, *bandwidth, *ridge, *share)?;
     let options = Options {
@@ -152,7 +152,7 @@ fn tracker(
         model,
         floor,
         steps,
-        trust: Trust { frames, ratio },
+        fallback: Fallback { frames, ratio },
     };
     let state = initial
         .map(|(recent, place, heading)| {
@@ -181,7 +181,7 @@ pub(crate) fn track<'py>(
     points: &Bound<'py, PyAny>,
     up: usize,
     poses: Arrays<'py>,
-    options: How,
+    options: OptionsTuple,
     model: Model,
     initial: Option<Initial<'py>>,
     positions: &Bound<'py, PyAny>,
@@ -246,7 +246,7 @@ pub(crate) fn track_stream<'py>(
     points: &Bound<'py, PyAny>,
     up: usize,
     poses: Arrays<'py>,
-    options: How,
+    options: OptionsTuple,
     model: Model,
     initial: Option<Initial<'py>>,
 ) -> PyResult<MotionTracker> {

@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use quatfilt_core::Real;
 use quatfilt_core::search::poses::along::Along;
 use quatfilt_core::search::poses::graph::{self, Apart, Graph, Neighbors};
-use quatfilt_core::search::poses::walk::{Database, Trust, Walk};
+use quatfilt_core::search::poses::walk::{Database, Fallback, Walk};
 use quatfilt_core::search::poses::{self, Index, Layout, Nearest, Segments};
 use std::ops::Range;
 use std::sync::Arc;
@@ -139,7 +139,7 @@ pub(crate) fn segment_walk(
     ratio: f64,
 ) -> PyResult<SegmentWalk> {
     let starts = numbers("starts", starts)?;
-    let along = graph.map(|_| (breadth, Trust { frames: refresh, ratio }));
+    let along = graph.map(|_| (breadth, Fallback { frames: refresh, ratio }));
     let inner = if crate::array::is_float32(features)? {
         Inner::Float32(state(py, features, &starts, k, length, successors, along)?)
     } else {
@@ -161,14 +161,14 @@ fn state<T: Real + Element>(
     count: usize,
     length: usize,
     successors: usize,
-    along: Option<(usize, Trust)>,
+    along: Option<(usize, Fallback)>,
 ) -> PyResult<State<T>> {
     let features = input::<T>("features", features)?;
     let segments = segments(&features, starts, length, successors)?;
     let work = segments.poses().saturating_mul(segments.dims());
     let index = run_interruptible(py, work, |interrupt| Index::new(&segments, interrupt))?;
     let search = match along {
-        Some((breadth, trust)) => Search::Walk(Walk::new(count, breadth, trust)),
+        Some((breadth, fallback)) => Search::Walk(Walk::new(count, breadth, fallback)),
         None => Search::Along(Along::new(count)),
     };
     Ok(State { layout: Arc::clone(segments.layout()), index, search, count })

@@ -1,18 +1,18 @@
-//! The bilateral orientation filter: neighbours in time count the more, the nearer their rotations are.
+//! The bilateral orientation filter: neighbours in time have larger weights if their rotations are nearer.
 //!
-//! N. Courty, "Bilateral human motion filtering". With the weights `W_r(i)`, falling with `|r|` and with the angle between
-//! `q_i` and `q_{i+r}`, as mask of Lee and Shin's construction:
+//! N. Courty, "Bilateral human motion filtering". The weights `W_r(i)` decrease with `|r|` and with the angle between
+//! `q_i` and `q_{i+r}`; they are the mask of Lee and Shin's construction:
 //!
 //! ```text
 //! F(q_i) = q_i exp(Σ_r W_r(i) S_r(i) / Σ_r W_r(i))
 //! S_r(i) = ω_i + … + ω_{i+r−1}   (r > 0),     −(ω_{i+r} + … + ω_{i−1})   (r < 0)
 //! ```
 //!
-//! Both factors of a pair of frames serve either of them, `W_{−r}(i) = W_r(i − r)` and `S_{−r}(i) = −S_r(i − r)`, and along
-//! the lags `S` grows by one increment at a time.
+//! Both factors of a pair of frames are shared by its two frames, `W_{−r}(i) = W_r(i − r)` and `S_{−r}(i) = −S_r(i −
+//! r)`, and from lag to lag `S` grows by one increment.
 
 pub use super::local::Translation;
-use super::local::{self, Local, Way};
+use super::local::{self, Increments, Local};
 use crate::clip::Planes;
 use crate::error::check_length;
 use crate::parallel::Interrupt;
@@ -41,17 +41,17 @@ pub struct Bilateral {
     pub sigma_time: f64,
     /// Scale of distances between rotations per joint: radians of rotation; may be infinite.
     pub sigma_angle: Vec<f64>,
-    /// The shape of the weights.
+    /// Shape of the weights.
     pub kernel: Kernel,
-    /// How often the filter is applied.
+    /// Number of times that the filter is applied.
     pub iterations: usize,
-    /// How the clip goes on beyond its ends, anew for each pass.
+    /// Continuation of the clip beyond its ends, recomputed for each pass.
     pub boundary: Boundary,
-    /// How many later frames have a weight, in each pass; `None` for as many as earlier ones.
+    /// Number of later frames with a weight, in each pass; `None` for as many as earlier ones.
     pub lookahead: Option<usize>,
 }
 
-/// Factors of squared angles beyond it weigh nothing but equal rotations, and overflow in float32.
+/// Largest factor of squared angles: with it only equal rotations have weights, and float32 does not overflow.
 pub(super) const LARGEST_FACTOR: f64 = 1e30;
 
 impl Bilateral {
@@ -61,7 +61,7 @@ impl Bilateral {
     /// No sample may be missing. Quaternions need not have length 1 exactly.
     ///
     /// # Errors
-    /// [`Error::Length`] if slices do not fit together; [`Error::Interrupted`].
+    /// [`Error::Length`] if the lengths of slices do not agree; [`Error::Interrupted`].
     pub fn filter<T: Real>(
         &self,
         clip: ClipView<'_, T>,
@@ -97,7 +97,7 @@ impl<T: Real> Local<T> for Bilateral {
         joint: usize,
         frames: usize,
         q: [&[T]; 4],
-        ways: &mut [Way<'_, T>],
+        paths: &mut [Increments<'_, T>],
         spare: &mut Planes<T>,
     ) {
         let sigma = self.sigma_angle[joint];
@@ -107,8 +107,8 @@ impl<T: Real> Local<T> for Bilateral {
         let [weights, total, mut reaches @ ..] = spare.rows_mut::<8>(0);
         let total = &mut total[..frames];
         total.fill(T::ONE);
-        for (way, reach) in ways.iter_mut().zip(reaches.chunks_exact_mut(3)) {
-            for (moves, reach) in way.moves.iter_mut().zip(reach) {
+        for (path, reach) in paths.iter_mut().zip(reaches.chunks_exact_mut(3)) {
+            for (moves, reach) in path.moves.iter_mut().zip(reach) {
                 moves.fill(T::ZERO);
                 reach.fill(T::ZERO);
             }
@@ -128,8 +128,8 @@ impl<T: Real> Local<T> for Bilateral {
             } else {
                 add_weights(&weights[..frames], total);
             }
-            for (way, reach) in ways.iter_mut().zip(reaches.chunks_exact_mut(3)) {
-                for ((steps, moves), reach) in way.steps.iter().zip(&mut way.moves).zip(reach) {
+            for (path, reach) in paths.iter_mut().zip(reaches.chunks_exact_mut(3)) {
+                for ((steps, moves), reach) in path.steps.iter().zip(&mut path.moves).zip(reach) {
                     lengthen(&mut reach[..2 * self.radius + frames - lag], &steps[lag - 1..]);
                     let (reach, moves) = (&reach[first..first + pairs], &mut moves[..frames]);
                     if ahead {
@@ -140,8 +140,8 @@ impl<T: Real> Local<T> for Bilateral {
                 }
             }
         }
-        for way in ways {
-            for moves in &mut way.moves {
+        for path in paths {
+            for moves in &mut path.moves {
                 divide(&mut moves[..frames], total);
             }
         }
@@ -190,7 +190,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Adds the next step to each sum of steps.
+    /// Adds the next increment to each sum of increments.
     fn lengthen<T: Real>(reach: &mut [T], steps: &[T]) {
         let n = reach.len();
         let steps = &steps[..n];
@@ -201,7 +201,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Adds the weighted ways to each frame's later and earlier neighbour.
+    /// Adds the weighted displacements to each frame's later and earlier neighbour.
     fn add_reaches<T: Real>(weights: &[T], reach: &[T], lag: usize, moves: &mut [T]) {
         let n = moves.len();
         let (earlier, later) = (&weights[..n], &weights[lag..lag + n]);
@@ -213,7 +213,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Adds the weighted way to each frame's earlier neighbour.
+    /// Adds the weighted displacement to each frame's earlier neighbour.
     fn take_reaches<T: Real>(weights: &[T], reach: &[T], moves: &mut [T]) {
         let n = moves.len();
         let (weights, reach) = (&weights[..n], &reach[..n]);

@@ -1,4 +1,4 @@
-//! Recursive filters, forwards and backwards: on rotations about their reference path.
+//! Recursive filters, forwards and backwards, on rotations about their reference path.
 //!
 //! Second-order sections in direct form II, transposed:
 //!
@@ -12,7 +12,7 @@ use crate::clip::Planes;
 use crate::error::check_length;
 use crate::parallel::Interrupt;
 
-/// Numbers of a section: `b0 b1 b2 a0 a1 a2`, with `a0 = 1`.
+/// Coefficients of a section: `b0 b1 b2 a0 a1 a2`, with `a0 = 1`.
 const COEFFICIENTS: usize = 6;
 
 /// The parameters of the filter.
@@ -20,11 +20,11 @@ const COEFFICIENTS: usize = 6;
 pub struct Butterworth {
     /// The sections of each joint, `(joints, sections, 6)`.
     pub sections: Vec<f64>,
-    /// The states of sections that have seen ones for ever, `(joints, sections, 2)`.
+    /// The steady states of the sections for a constant input of 1, `(joints, sections, 2)`.
     pub states: Vec<f64>,
-    /// Sections of a joint.
+    /// Number of sections of a joint.
     pub count: usize,
-    /// How many frames the columns go on beyond both ends, at most one less than there are: turned about their end points.
+    /// Number of frames added at both ends, less than the number of frames: reflected about the end points.
     pub padding: usize,
 }
 
@@ -72,7 +72,7 @@ impl Smooth for Butterworth {
     }
 }
 
-/// Writes a column with `padding` numbers more at both ends, `x_{−n} = 2 x_0 − x_n`.
+/// Writes a column with `padding` more values at both ends, `x_{−n} = 2 x_0 − x_n`.
 fn extend(column: &[f64], padding: usize, out: &mut [f64]) {
     let last = column.len() - 1;
     for n in 1..=padding {
@@ -82,7 +82,7 @@ fn extend(column: &[f64], padding: usize, out: &mut [f64]) {
     out[padding..=padding + last].copy_from_slice(column);
 }
 
-/// Runs a section along three columns, which do not wait for each other.
+/// Runs a section along three columns, which are independent of each other.
 fn run(
     columns: &mut [&mut [f64]; 3],
     &[b0, b1, b2, _, a1, a2]: &[f64; COEFFICIENTS],

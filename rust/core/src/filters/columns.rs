@@ -1,4 +1,4 @@
-//! Columns of numbers along time under a mask.
+//! Columns of values along time, filtered with a mask.
 
 use crate::clip::Planes;
 use crate::parallel::Interrupt;
@@ -6,24 +6,24 @@ use crate::simd::multiversion;
 use crate::window::{Boundary, extended_number};
 use crate::{Error, Real};
 
-/// Frames whose sums stay in registers while the lags go by; padded columns are multiples of it.
+/// Frames whose sums stay in registers over all lags; padded columns are multiples of it.
 pub(crate) const BLOCK: usize = 32;
 
-/// Frames after which a long mask looks whether it was interrupted.
+/// Frames between two checks of the interrupt flag.
 const PIECE: usize = 256 * BLOCK;
 
-/// Deviations after which a Gaussian mask is cut off.
+/// Standard deviations at which a Gaussian mask is truncated.
 const REACH: f64 = 4.0;
 
-/// A mask of `2·radius + 1` weights, the same before and after.
+/// A symmetric mask of `2·radius + 1` weights.
 #[derive(Debug, Clone)]
 pub(crate) struct Mask {
-    /// Weights of the frame itself and of those after it.
+    /// Weights of the frame itself and of the later frames.
     later: Vec<f64>,
 }
 
 impl Mask {
-    /// Gaussian weights of deviation `sigma` frames, cut off at four deviations, with the sum 1.
+    /// Gaussian weights of standard deviation `sigma` frames, truncated at four standard deviations, with the sum 1.
     pub(crate) fn gaussian(sigma: f64) -> Self {
         let radius = (REACH * sigma + 0.5).to_count();
         let weight = |lag: usize| {
@@ -38,13 +38,13 @@ impl Mask {
         Self { later }
     }
 
-    /// How many frames before and after a frame it weighs.
+    /// Radius in frames.
     pub(super) fn radius(&self) -> usize {
         self.later.len().saturating_sub(1)
     }
 
-    /// Writes the sums `Σ_j m_j x_{t+j}` of a column that goes on by `radius` frames beyond both ends of `out`, whose length
-    /// is a multiple of [`BLOCK`].
+    /// Writes the sums `Σ_j m_j x_{t+j}` of a column that extends `radius` frames past both ends of `out`, whose
+    /// length is a multiple of [`BLOCK`].
     pub(super) fn apply(&self, around: &[f64], out: &mut [f64], interrupt: &Interrupt) -> Result<(), Error> {
         for (piece, out) in out.chunks_mut(PIECE).enumerate() {
             interrupt.check()?;
@@ -54,10 +54,11 @@ impl Mask {
         Ok(())
     }
 
-    /// Means of columns of `frames` numbers, padded to a multiple of [`BLOCK`], in place, under a mask whose sum is 1.
+    /// Weighted means of columns of `frames` values, padded to a multiple of [`BLOCK`], in place; the sum of the mask
+    /// is 1.
     ///
-    /// With the trust `c` of the frames, `Σ_j m_j c_{t+j} x_{t+j} / Σ_j m_j c_{t+j}`; where none under the mask is trusted, the
-    /// number stays.
+    /// With the confidence `c` of the frames, `Σ_j m_j c_{t+j} x_{t+j} / Σ_j m_j c_{t+j}`. Where all confidences
+    /// under the mask are 0, the value is unchanged.
     pub(crate) fn means(
         &self,
         columns: &mut [&mut [f64]],
@@ -89,8 +90,8 @@ impl Mask {
     }
 }
 
-/// Writes the sums `Σ_j m_j x_{t+j}` of a column that goes on by half the length of an odd mask beyond both ends of `out`, whose
-/// length is a multiple of [`BLOCK`].
+/// Writes the sums `Σ_j m_j x_{t+j}` of a column that extends half the length of an odd mask past both ends of `out`,
+/// whose length is a multiple of [`BLOCK`].
 pub(super) fn slide(
     mask: &[f64],
     around: &[f64],
@@ -104,7 +105,7 @@ pub(super) fn slide(
     Ok(())
 }
 
-/// Writes a column with `radius` numbers more before and after it; zeros follow up to the length of `out`.
+/// Writes a column with `radius` more values before and after it, followed by zeros up to the length of `out`.
 pub(super) fn extend(column: &[f64], radius: usize, boundary: Boundary, slope: bool, out: &mut [f64]) {
     let end = radius + column.len();
     out[radius..end].copy_from_slice(column);
@@ -121,7 +122,7 @@ pub(super) fn extend(column: &[f64], radius: usize, boundary: Boundary, slope: b
 }
 
 multiversion! {
-    /// Sums under a mask, for blocks of frames.
+    /// Sums under a symmetric mask, for blocks of frames.
     fn sums<T: Real>(around: &[T], later: &[T], out: &mut [T]) {
         let radius = later.len() - 1;
         for (block, out) in out.chunks_exact_mut(BLOCK).enumerate() {
@@ -167,7 +168,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Divides sums by the sums of their weights; where those are 0 the number before stays.
+    /// Divides sums by the sums of their weights; where those are 0 the previous value is kept.
     fn divide<T: Real>(sums: &mut [T], total: &[T], before: &[T]) {
         let n = sums.len();
         let (total, before) = (&total[..n], &before[..n]);

@@ -1,4 +1,4 @@
-//! Confidence for filters that have no weights of their own: doubtful samples give way to their surroundings first.
+//! Confidence for filters without weights: samples of low confidence are first moved towards their surroundings.
 
 use super::gaps::{self, Method};
 use crate::error::check_length;
@@ -7,25 +7,31 @@ use crate::rotations::quaternion::{dot, geodesic, unit};
 use crate::window::Boundary;
 use crate::{ClipMut, ClipView, Error, Real, parallel};
 
-/// Frames: deviation of the Gaussian with which surroundings weigh.
+/// Standard deviation of the Gaussian weights of the surroundings, in frames.
 const SIGMA: f64 = 2.0;
 
-/// Frames: how far surroundings reach, four deviations.
+/// Radius of the surroundings in frames: four standard deviations.
 const RADIUS: isize = 8;
 
 /// Samples per task.
 const TILE: usize = 8 * 1024;
 
-/// Replaces samples as far as they are not trusted, `(frames, joints, 4)`; `confidence` is `(frames, joints)`.
+/// Moves samples `(frames, joints, 4)` towards their surroundings, by one minus their `confidence`, `(frames,
+/// joints)`.
 ///
-/// Samples of confidence 0 are filled in along the geodesics between the others. Samples of a confidence `c` between 0
-/// and 1 move by `1 − c` of the way towards the mean of their surroundings, `Σ_r exp(−r² / 2σ²) c_{t+r} q_{t+r}` made a
-/// unit quaternion, along the path that is continuous in sign, with mirrored ends. Samples of confidence 1 stay as they
-/// are, and so do joints that are trusted nowhere. The result is continuous in sign from the first trusted sample.
+/// Samples of confidence 0 are interpolated along the geodesics between the others. Samples of a confidence `c`
+/// between 0 and 1 move by the fraction `1 − c` towards the mean of their surroundings: `Σ_r exp(−r² / 2σ²) c_{t+r}
+/// q_{t+r}`, normalised, along the sign-continuous path, with mirrored ends. Samples of confidence 1 are unchanged,
+/// and so are joints whose confidence is 0 in all frames. The result is continuous in sign from the first sample with
+/// confidence.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit.
-pub fn trusted<T: Real>(q: ClipView<'_, T>, confidence: &[T], out: ClipMut<'_, T>) -> Result<(), Error> {
+/// [`Error::Length`] if the lengths of slices do not agree.
+pub fn pulled_by_confidence<T: Real>(
+    q: ClipView<'_, T>,
+    confidence: &[T],
+    out: ClipMut<'_, T>,
+) -> Result<(), Error> {
     let (frames, joints) = (q.frames(), q.joints());
     let out = out.into_data();
     check_length("out", q.data().len(), out.len())?;
@@ -47,12 +53,12 @@ pub fn trusted<T: Real>(q: ClipView<'_, T>, confidence: &[T], out: ClipMut<'_, T
     parallel::for_each(tiles, confidence.len() * 20, |tile, out: &mut [T]| {
         for (i, sample) in out.chunks_exact_mut(4).enumerate() {
             let at = tile * length + i;
-            let trust = confidence[at].to_f64();
-            if trust > 0.0 && trust < 1.0 {
+            let c = confidence[at].to_f64();
+            if c > 0.0 && c < 1.0 {
                 let (frame, joint) = (at / joints, at % joints);
                 let own = unit(path.at(frame, joint).map(T::to_f64));
                 let mean = surroundings(path, confidence, frame, joint);
-                sample.copy_from_slice(&geodesic(own, mean.unwrap_or(own), 1.0 - trust).map(T::from_f64));
+                sample.copy_from_slice(&geodesic(own, mean.unwrap_or(own), 1.0 - c).map(T::from_f64));
             }
         }
         Ok(())
@@ -60,25 +66,25 @@ pub fn trusted<T: Real>(q: ClipView<'_, T>, confidence: &[T], out: ClipMut<'_, T
     make_continuous(out, joints)
 }
 
-/// The clip with NaN where nothing is trusted, in the joints that are trusted somewhere.
+/// The clip with NaN where the confidence is 0, in joints with confidence in at least one frame.
 fn known<T: Real>(q: ClipView<'_, T>, confidence: &[T]) -> Vec<T> {
     let joints = q.joints();
-    let mut trusted = vec![false; joints];
+    let mut has_confidence = vec![false; joints];
     for row in confidence.chunks_exact(joints) {
-        for (trusted, &confidence) in trusted.iter_mut().zip(row) {
-            *trusted |= confidence > T::ZERO;
+        for (has_confidence, &confidence) in has_confidence.iter_mut().zip(row) {
+            *has_confidence |= confidence > T::ZERO;
         }
     }
     let mut known = q.data().to_vec();
     for (at, sample) in known.chunks_exact_mut(4).enumerate() {
-        if confidence[at] == T::ZERO && trusted[at % joints] {
+        if confidence[at] == T::ZERO && has_confidence[at % joints] {
             sample.fill(T::nan());
         }
     }
     known
 }
 
-/// The mean of the samples around one, weighted by confidence and by nearness in time; `None` if their sum is 0.
+/// The mean of the samples around one, weighted by confidence and by distance in time; `None` if their sum is 0.
 fn surroundings<T: Real>(
     path: ClipView<'_, T>,
     confidence: &[T],

@@ -11,12 +11,12 @@ use crate::{ClipMut, ClipView, Error, Real, parallel};
 /// Samples per task.
 const TILE: usize = 32 * 1024;
 
-/// The way through a gap.
+/// Interpolation through a gap.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
     /// The shorter geodesic, at constant angular velocity.
     Slerp,
-    /// Shoemake's spherical cubic, which takes up the angular velocities at its ends.
+    /// Shoemake's spherical cubic, which matches the angular velocities at its ends.
     Squad,
 }
 
@@ -28,7 +28,7 @@ struct Run {
     end: usize,
 }
 
-/// Copies `q` to `out`, and returns the places of the missing samples, as `frame · joints + joint`.
+/// Copies `q` to `out`, and returns the indices of the missing samples, as `frame · joints + joint`.
 fn copy<T: Real>(q: &[T], out: &mut [T]) -> Result<Vec<usize>, Error> {
     let tiles: Vec<(&[T], &mut [T])> = q.chunks(TILE * 4).zip(out.chunks_mut(TILE * 4)).collect();
     let missing = parallel::map(tiles, q.len() / 4, |tile, (q, out)| {
@@ -67,8 +67,8 @@ fn slope(from: Key, to: Key) -> [f64; 3] {
     log_short(between(from.q, to.q)).map(|x| x / frames)
 }
 
-/// Half the rotation vector per frame at `key`, between `before` and `after`: the slope of the parabola through the
-/// three, or that of the geodesic where one of them is lacking.
+/// Half the rotation vector per frame at `key`: the slope of the parabola through `before`, `key` and `after`, or
+/// that of the geodesic if one of them does not exist.
 fn velocity(before: Option<Key>, key: Key, after: Option<Key>) -> [f64; 3] {
     match (before, after) {
         (Some(before), Some(after)) => {
@@ -82,12 +82,12 @@ fn velocity(before: Option<Key>, key: Key, after: Option<Key>) -> [f64; 3] {
     }
 }
 
-/// The rotation at `part` of the way from `x` to `y`, signs taken as they are.
+/// The rotation at the fraction `part` from `x` to `y`, with the signs as given.
 fn along(x: [f64; 4], y: [f64; 4], part: f64) -> [f64; 4] {
     product(x, exp_one(log_one(between(x, y)).map(|v| v * part)))
 }
 
-/// Shoemake's spherical cubic from one key to the next, with the velocities that it has at its ends.
+/// Shoemake's spherical cubic between two keys, with the velocities at its ends.
 struct Squad {
     a: [f64; 4],
     b: [f64; 4],
@@ -118,9 +118,9 @@ impl Squad {
     }
 }
 
-/// The nearest valid samples of a run's joint before and after it, and those beyond them: what [`Squad::new`] takes.
+/// The two nearest valid samples before and after a run: the arguments of [`Squad::new`].
 ///
-/// The runs are those of all joints, in order.
+/// `runs` are those of all joints, in order.
 fn keys<T: Real>(
     q: ClipView<'_, T>,
     runs: &[Run],
@@ -139,13 +139,13 @@ fn keys<T: Real>(
 
 /// Fills the runs of missing samples of each joint.
 ///
-/// A run between two valid samples is filled along the way from one to the other that `method` names; a run at an end of
-/// the clip is held at the nearest valid sample. Runs of more than `max_gap` frames (`None`: no limit)
-/// and joints without any valid sample become NaN. `filled` tells where samples were filled in, `(frames, joints)`. The
-/// result is continuous in sign from the first valid sample.
+/// A run between two valid samples is interpolated with `method`; a run at an end of the clip repeats the nearest
+/// valid sample. Runs of more than `max_gap` frames (`None`: no limit) and joints without any valid sample become
+/// NaN. `filled` marks the filled samples, `(frames, joints)`. The result is continuous in sign from the first valid
+/// sample.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit.
+/// [`Error::Length`] if the lengths of slices do not agree.
 pub fn fill_gaps<T: Real>(
     q: ClipView<'_, T>,
     max_gap: Option<usize>,
@@ -178,7 +178,7 @@ pub fn fill_gaps<T: Real>(
                     return curve.at(steps / intervals).map(T::from_f64);
                 }
                 let part = T::from_f64(steps) / T::from_f64(intervals);
-                // Between equal ends, which hold a sample, every part is that sample.
+                // Between equal ends, as at the ends of a clip, the result is that sample.
                 between_neighbours(a, b, if before.is_none() || after.is_none() { T::ZERO } else { part })
             });
             let at = frame * joints + run.joint;

@@ -1,4 +1,5 @@
-//! The Gaussian filter: a mask of Gaussian weights, on rotations about their reference path. Confidence weighs too.
+//! The Gaussian filter: a mask of Gaussian weights, on rotations about their reference path. Confidence multiplies
+//! the weights.
 
 use super::columns::Mask;
 use super::development::{Columns, Smooth};
@@ -11,9 +12,9 @@ use crate::{Error, Real};
 /// The parameters of the filter.
 #[derive(Debug, Clone)]
 pub struct Gaussian {
-    /// Deviation of the mask in frames, for each joint.
+    /// Standard deviation of the mask in frames, for each joint.
     pub sigma: Vec<f64>,
-    /// How the vectors go on beyond the ends of the clip.
+    /// Continuation of the vectors beyond the ends of the clip.
     pub boundary: Boundary,
 }
 

@@ -1,4 +1,4 @@
-//! Filters that go through time frame by frame: eight joints side by side, so that their recursions become vector code.
+//! Filters that run frame by frame: eight joints side by side, so that their recursions become vector code.
 
 use crate::parallel;
 use crate::rotations::quaternion::{dot, unit};
@@ -12,28 +12,28 @@ pub(super) const LANES: usize = 8;
 /// Frames per task of the last pass.
 const TILE: usize = 1024;
 
-/// A number for each joint.
+/// A value for each joint.
 pub(super) type Lane = [f64; LANES];
 
 /// Joints of a clip that are filtered side by side.
 pub(super) struct Group<'a, T> {
     clip: ClipView<'a, T>,
     confidence: Option<&'a [T]>,
-    /// The first of the joints.
+    /// Index of the first joint.
     pub(super) first: usize,
-    /// How many they are, at most [`LANES`].
+    /// Number of joints, at most [`LANES`].
     pub(super) joints: usize,
 }
 
 impl<T: Real> Group<'_, T> {
-    /// One number per joint of the clip as one per lane, 1 where there is no joint.
+    /// Values per joint of the clip as lanes; 1 in lanes without a joint.
     pub(super) fn lane(&self, numbers: &[f64]) -> Lane {
         let numbers = &numbers[self.first..self.first + self.joints];
         std::array::from_fn(|lane| numbers.get(lane).copied().unwrap_or(1.0))
     }
 
-    /// Reads the quaternions of a frame, of any length, and their confidences; lanes without a joint stay as they are.
-    pub(super) fn load(&self, frame: usize, q: &mut [Lane; 4], trust: &mut Lane) {
+    /// Reads the quaternions of a frame, of any length, and their confidences; lanes without a joint are unchanged.
+    pub(super) fn load(&self, frame: usize, q: &mut [Lane; 4], confidences: &mut Lane) {
         let at = frame * self.clip.joints() + self.first;
         let (samples, _) = self.clip.data().as_chunks::<4>();
         for (lane, sample) in samples[at..at + self.joints].iter().enumerate() {
@@ -42,8 +42,8 @@ impl<T: Real> Group<'_, T> {
             }
         }
         if let Some(confidence) = self.confidence {
-            for (trust, confidence) in trust.iter_mut().zip(&confidence[at..at + self.joints]) {
-                *trust = confidence.to_f64();
+            for (out, confidence) in confidences.iter_mut().zip(&confidence[at..at + self.joints]) {
+                *out = confidence.to_f64();
             }
         }
     }
@@ -55,8 +55,9 @@ impl<T: Real> Group<'_, T> {
         path.position(|&confidence| confidence > T::ZERO)
     }
 
-    /// The rows of the result, `(frames, joints of the group, 4)`, continuous in sign from the hemisphere of the clip's
-    /// first frame. Before the first frame with confidence the rotation is the one there; without any it is the sample.
+    /// The rows of the result, `(frames, joints of the group, 4)`, continuous in sign from the hemisphere of the
+    /// clip's first frame. Frames before the first one with confidence repeat it; joints without any confidence are
+    /// unchanged.
     pub(super) fn rows<'b>(&self, rotation: impl Fn(usize) -> &'b [Lane; 4]) -> Vec<T> {
         let frames = self.clip.frames();
         let begin: Vec<Option<usize>> = (0..self.joints).map(|lane| self.begin(lane)).collect();
@@ -86,7 +87,7 @@ impl<T: Real> Group<'_, T> {
 }
 
 multiversion! {
-    /// Makes quaternions of length 1, with the sign that is nearer to those before; they are the next ones' before.
+    /// Normalises quaternions, with the sign nearer to the previous ones, and updates these.
     fn follow(q: &mut [Lane; 4], before: &mut [Lane; 4]) {
         let (mut now, last) = (*q, *before);
         for i in 0..LANES {
@@ -99,15 +100,15 @@ multiversion! {
     }
 }
 
-/// Numbers of joints as lanes, 1 where there is no joint.
+/// Values of joints as lanes, 1 in lanes without a joint.
 pub(super) fn lanes(numbers: &[f64]) -> Vec<Lane> {
     let lane = |numbers: &[f64]| std::array::from_fn(|i| numbers.get(i).copied().unwrap_or(1.0));
     numbers.chunks(LANES).map(lane).collect()
 }
 
-/// Filters a clip group by group: `filter` goes through the frames of a group and gives its [`Group::rows`], and what else
-/// it knows; for the first group that comes back. Its buffers go from group to group: fresh pages cost as much as the
-/// arithmetic.
+/// Filters a clip group by group: `filter` processes the frames of a group and returns its [`Group::rows`] with a
+/// second result, of which the first group's is returned. Its buffers are reused from group to group: fresh pages
+/// cost as much as the arithmetic.
 ///
 /// # Errors
 /// The first error of the groups.
@@ -145,7 +146,8 @@ pub(super) fn run<T: Real, B: Default + Send, R: Send>(
     Ok(more.into_iter().next())
 }
 
-/// The one or the other, both finite: as factors, for selects of many numbers become branches, and no vector code.
+/// One of two finite arrays, selected by multiplication: the compiler turns selects of many values into branches,
+/// which are not vectorised.
 #[inline(always)]
 pub(super) fn select<const N: usize>(condition: bool, yes: [f64; N], no: [f64; N]) -> [f64; N] {
     let (one, other) = if condition { (1.0, 0.0) } else { (0.0, 1.0) };
@@ -156,7 +158,7 @@ pub(super) fn select<const N: usize>(condition: bool, yes: [f64; N], no: [f64; N
     chosen
 }
 
-/// The quaternions in the lanes of four planes.
+/// The lane `lane` of `N` planes.
 #[inline(always)]
 pub(super) fn of_lane<const N: usize>(planes: &[Lane; N], lane: usize) -> [f64; N] {
     let mut values = [0.0; N];
@@ -166,7 +168,7 @@ pub(super) fn of_lane<const N: usize>(planes: &[Lane; N], lane: usize) -> [f64; 
     values
 }
 
-/// Writes the components into the planes.
+/// Writes values to the lane of `N` planes.
 #[inline(always)]
 pub(super) fn set_lane<const N: usize>(planes: &mut [Lane; N], lane: usize, values: [f64; N]) {
     for c in 0..N {
@@ -174,7 +176,7 @@ pub(super) fn set_lane<const N: usize>(planes: &mut [Lane; N], lane: usize, valu
     }
 }
 
-/// A vector times a number.
+/// A vector times a scalar.
 #[inline(always)]
 pub(super) fn scaled(v: [f64; 3], factor: f64) -> [f64; 3] {
     [v[0] * factor, v[1] * factor, v[2] * factor]

@@ -1,8 +1,8 @@
-//! Filters that move each frame by what they see of its neighbours in time: Lee and Shin's construction.
+//! Filters that move each frame by a sum over its neighbours in time: Lee and Shin's construction.
 //!
-//! With the increments `ω_i = log(q_i⁻¹ q_{i+1})`, a filter says by which half rotation vector `v_i`, a sum of increments
-//! around it, each frame moves: `q_i exp(v_i)`. The clip is worked through in tiles of frames, in parallel; a tile holds
-//! the unit quaternions of its frames and of those around them as planes. Each pass extends the result of the one before.
+//! With the increments `ω_i = log(q_i⁻¹ q_{i+1})`, a filter determines a half rotation vector `v_i`, a sum of
+//! increments around each frame: `q_i exp(v_i)`. The clip is processed in tiles of frames, in parallel. A tile holds
+//! the unit quaternions of its frames and of those around them as planes. Each pass extends the previous result.
 
 use super::samples::{LANE, load_local, store_local};
 use crate::clip::Planes;
@@ -16,47 +16,47 @@ use crate::{ClipMut, ClipView, Error, Real};
 use std::ops::Range;
 use std::sync::Mutex;
 
-/// Bytes of planes that a tile should stay within: half of a common second-level cache.
+/// Target size of a tile's planes in bytes: half of a typical second-level cache.
 const TILE_BYTES: usize = 256 * 1024;
 
-/// Frames of a tile, at least and at most, where its surroundings do not ask for more.
+/// Least and largest number of frames of a tile, unless its surroundings require more.
 const TILE_FRAMES: Range<usize> = 128..2048;
 
-/// Planes of a joint: its unit quaternions and by how much its frames move.
+/// Planes of a joint: its unit quaternions and the displacements of its frames.
 const PER_JOINT: usize = 7;
 
-/// What one filter does with the frames of a tile.
+/// One filter's work on the frames of a tile.
 pub(super) trait Local<T: Real>: Sync {
-    /// How many frames before and after a frame it looks at.
+    /// Number of frames before and after a frame that the filter uses.
     fn radius(&self) -> usize;
 
     /// Estimated nanoseconds per frame and joint.
     fn nanoseconds(&self) -> usize;
 
-    /// Writes by how much the frames of a tile move, those of a joint and of what goes along with it.
+    /// Writes the displacements of the frames of a tile: of a joint, and of the translation that moves with it.
     ///
-    /// The tile's first frame stands at `radius` in the planes of `q`, which hold the `frames` of the tile, `radius` more
-    /// at either end, and spare ones up to a multiple of [`LANE`].
+    /// The tile's first frame is at the index `radius` in the planes of `q`. They hold the `frames` of the tile,
+    /// `radius` more at either end, and padding up to a multiple of [`LANE`].
     fn moves(
         &self,
         joint: usize,
         frames: usize,
         q: [&[T]; 4],
-        ways: &mut [Way<'_, T>],
-        spare: &mut Planes<T>,
+        paths: &mut [Increments<'_, T>],
+        scratch: &mut Planes<T>,
     );
 }
 
-/// A path in three coordinates: of a joint as seen from itself, or of the translation.
+/// The increments of a path in three coordinates: of a joint relative to itself, or of the translation.
 #[derive(Debug)]
-pub(super) struct Way<'a, T> {
-    /// From each frame to the next, from `radius` frames before the tile on.
+pub(super) struct Increments<'a, T> {
+    /// Increments from each frame to the next, starting `radius` frames before the tile.
     pub(super) steps: [&'a [T]; 3],
-    /// By how much the frames of the tile move, to be written; spare ones up to a multiple of [`LANE`] included.
+    /// Displacements of the frames of the tile, to be written; with padding up to a multiple of [`LANE`].
     pub(super) moves: [&'a mut [T]; 3],
 }
 
-/// The root's translation that is filtered along with the first joint.
+/// The root's translation, filtered along with the first joint.
 #[derive(Debug)]
 pub struct Translation<'a, T> {
     /// `(frames, 3)`.
@@ -65,13 +65,13 @@ pub struct Translation<'a, T> {
     pub out: &'a mut [T],
 }
 
-/// Memory that goes from tile to tile: fresh pages cost as much as the arithmetic.
+/// Scratch memory, reused from tile to tile: fresh pages cost as much as the arithmetic.
 #[derive(Debug, Default)]
 struct Buffers<T> {
     joints: Planes<T>,
     steps: Planes<T>,
     moved: Planes<T>,
-    spare: Planes<T>,
+    scratch: Planes<T>,
     rows: Vec<[T; 4]>,
 }
 
@@ -79,7 +79,7 @@ struct Buffers<T> {
 /// the first frame.
 ///
 /// # Errors
-/// [`Error::Length`] if slices do not fit together; [`Error::Interrupted`].
+/// [`Error::Length`] if the lengths of slices do not agree; [`Error::Interrupted`].
 pub(super) fn run<T: Real>(
     filter: &impl Local<T>,
     (iterations, boundary): (usize, Boundary),
@@ -149,16 +149,16 @@ fn pass<T: Real>(
     let mut moved = moved.chunks_mut((length * columns).max(1));
     let tiles: Vec<(&mut [T], &mut [T])> =
         out.chunks_mut(length * joints * 4).map(|out| (out, moved.next().unwrap_or_default())).collect();
-    let spare: Mutex<Vec<Buffers<T>>> = Mutex::default();
+    let pool: Mutex<Vec<Buffers<T>>> = Mutex::default();
     parallel::for_each(tiles, frames * joints * filter.nanoseconds(), |index, (out, moved)| {
-        let kept = spare.lock().map_or(None, |mut spare| spare.pop());
+        let kept = pool.lock().map_or(None, |mut pool| pool.pop());
         let mut buffers = kept.unwrap_or_default();
         let first = index * length;
         let own = first..(first + length).min(frames);
         let tile = Tile { filter, extended: &extended, translation, boundary, own };
         tile.filter(out, moved, &mut buffers, interrupt)?;
-        if let Ok(mut spare) = spare.lock() {
-            spare.push(buffers);
+        if let Ok(mut pool) = pool.lock() {
+            pool.push(buffers);
         }
         Ok(())
     })
@@ -185,7 +185,7 @@ impl<T: Real, F: Local<T>> Tile<'_, T, F> {
         let frames = self.own.len();
         let padded = frames.next_multiple_of(LANE);
         let length = padded + 2 * self.filter.radius();
-        let Buffers { joints: planes, steps, moved: positions, spare, rows } = buffers;
+        let Buffers { joints: planes, steps, moved: positions, scratch, rows } = buffers;
         planes.reshape(joints * PER_JOINT, length);
         steps.reshape(6, length);
         positions.reshape(6, length);
@@ -200,20 +200,20 @@ impl<T: Real, F: Local<T>> Tile<'_, T, F> {
             let q = [&*w, &*x, &*y, &*z];
             let [a, b, c, along_steps @ ..] = steps.rows_mut::<6>(0);
             increments(q, a, b, c);
-            let way = Way { steps: [&*a, &*b, &*c], moves: moves.map(|moves| &mut moves[..padded]) };
+            let path = Increments { steps: [&*a, &*b, &*c], moves: moves.map(|moves| &mut moves[..padded]) };
             if joint == 0 && along {
                 let [px, py, pz, along_moves @ ..] = positions.rows_mut::<6>(0);
                 let mut along_steps = along_steps;
                 for (steps, positions) in along_steps.iter_mut().zip([&*px, &*py, &*pz]) {
                     differences(positions, steps);
                 }
-                let translation = Way {
+                let translation = Increments {
                     steps: along_steps.map(|steps| &*steps),
                     moves: along_moves.map(|moves| &mut moves[..padded]),
                 };
-                self.filter.moves(joint, frames, q, &mut [way, translation], spare);
+                self.filter.moves(joint, frames, q, &mut [path, translation], scratch);
             } else {
-                self.filter.moves(joint, frames, q, &mut [way], spare);
+                self.filter.moves(joint, frames, q, &mut [path], scratch);
             }
         }
         self.store(planes, rows, out);
@@ -232,7 +232,7 @@ impl<T: Real, F: Local<T>> Tile<'_, T, F> {
     /// The unit quaternions of the tile and its surroundings.
     fn load(&self, planes: &mut Planes<T>) {
         let joints = self.extended.joints();
-        // The extended frame `first` is `radius` frames before the tile's first.
+        // The extended frame `first` is `radius` frames before the tile's first frame.
         let first = self.own.start;
         let range = first..self.own.end + 2 * self.filter.radius();
         for (at, block) in self.extended.blocks(range) {
@@ -267,7 +267,7 @@ impl<T: Real, F: Local<T>> Tile<'_, T, F> {
         let radius = self.filter.radius();
         rows.resize(LANE * joints, [T::ZERO; 4]);
         let (samples, _) = out.as_chunks_mut::<4>();
-        // Rows are put together in a buffer that stays in the cache, and then written once, in order.
+        // Rows are assembled in a buffer that stays in the cache, and then written once, in order.
         for (chunk, out) in samples.chunks_mut(LANE * joints).enumerate() {
             let start = chunk * LANE;
             for joint in 0..joints {
@@ -283,7 +283,7 @@ impl<T: Real, F: Local<T>> Tile<'_, T, F> {
 }
 
 multiversion! {
-    /// Half rotation vectors from each frame to the next, the shorter way.
+    /// Half rotation vectors of the shorter rotation from each frame to the next.
     fn increments<T: Real>(q: [&[T]; 4], x: &mut [T], y: &mut [T], z: &mut [T]) {
         let n = q[0].len();
         let here = q.map(|q| &q[..n - 1]);
@@ -301,7 +301,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// From each number to the next.
+    /// Differences of successive values.
     fn differences<T: Real>(x: &[T], steps: &mut [T]) {
         let n = x.len();
         let (here, next, steps) = (&x[..n - 1], &x[1..n], &mut steps[..n - 1]);

@@ -1,4 +1,4 @@
-//! Filters: a clip in, a cleaner clip out.
+//! Filters: from a clip to a cleaner clip.
 
 pub mod bilateral;
 pub mod butterworth;

@@ -1,8 +1,8 @@
 //! The 1€ filter: a low pass whose cutoff grows with the speed.
 //!
-//! G. Casiez, N. Roussel and D. Vogel, "1€ filter: a simple speed-based low-pass filter for noisy input in interactive
-//! systems". With the sample `y` before, `n` frames ago, its result `x`, and the share `α(f) = 1 / (1 + 1 / (2π f n))` of a
-//! cutoff `f`, a sample `z` leads to
+//! G. Casiez, N. Roussel and D. Vogel, "1€ filter: a simple speed-based low-pass filter for noisy input in
+//! interactive systems". Let `y` be the previous sample, `n` frames ago, `x` its result, and `α(f) = 1 / (1 + 1 / (2π
+//! f n))` the smoothing factor of a cutoff `f`. A sample `z` gives
 //!
 //! ```text
 //! ω ← ω + α(f_d) (2 log(y⁻¹ z) / n − ω)
@@ -19,7 +19,7 @@ use crate::{ClipMut, ClipView, Error, Real};
 
 pub use super::local::Translation;
 
-/// Frames between looks at the interrupt.
+/// Frames between two checks of the interrupt flag.
 const STRETCH: usize = 4096;
 
 /// Estimated nanoseconds per sample.
@@ -30,22 +30,22 @@ const NANOSECONDS: usize = 30;
 pub struct OneEuro {
     /// Cutoff at rest per joint: 1 / frame; may be infinite.
     pub min_cutoff: Vec<f64>,
-    /// How fast the cutoff grows with the speed, per joint: 1 / radian.
+    /// Growth of the cutoff with the speed, per joint: 1 / radian.
     pub beta: Vec<f64>,
     /// Cutoff of the velocity per joint: 1 / frame; may be infinite.
     pub derivative_cutoff: Vec<f64>,
 }
 
 impl OneEuro {
-    /// Filters `clip` forward in time into `out`, `(frames, joints, 4)`, sign-continuous from the hemisphere of the first
-    /// frame, and a translation by the shares of the first joint.
+    /// Filters `clip` forward in time into `out`, `(frames, joints, 4)`, sign-continuous from the hemisphere of the
+    /// first frame, and a translation with the smoothing factors of the first joint.
     ///
-    /// A sample of `confidence` `c`, `(frames, joints)`, counts by the share `c·α`; without any it is none. Before a joint's
-    /// first sample with confidence its pose is the one there. No sample may be missing otherwise. Quaternions need not
-    /// have length 1 exactly.
+    /// A sample of `confidence` `c`, `(frames, joints)`, has the smoothing factor `c·α`; samples with confidence 0
+    /// are ignored. Before a joint's first sample with confidence its pose is constant. No other sample may be
+    /// missing. Quaternions need not have length 1 exactly.
     ///
     /// # Errors
-    /// [`Error::Length`] if slices do not fit together; [`Error::Interrupted`].
+    /// [`Error::Length`] if the lengths of slices do not agree; [`Error::Interrupted`].
     pub fn filter<T: Real>(
         &self,
         clip: ClipView<'_, T>,
@@ -84,7 +84,7 @@ impl OneEuro {
         Ok(())
     }
 
-    /// The rows of a group; when its first joint begins, and by which part of the way to each sample it moves.
+    /// The rows of a group; and for its first joint the first frame and the smoothing factors.
     fn run<T: Real>(
         &self,
         group: &Group<'_, T>,
@@ -95,7 +95,7 @@ impl OneEuro {
         records.clear();
         records.resize(frames, Record::STILL);
         for (frame, record) in records.iter_mut().enumerate() {
-            group.load(frame, &mut record.rotation, &mut record.trust);
+            group.load(frame, &mut record.rotation, &mut record.confidence);
         }
         let cutoffs = Cutoffs {
             least: group.lane(&self.min_cutoff),
@@ -113,14 +113,14 @@ impl OneEuro {
     }
 }
 
-/// By which part of the way to each sample a joint moved.
+/// Smoothing factors of a joint: the fraction of the displacement to each sample.
 struct Shares {
     /// The frame of its first sample.
     begin: Option<usize>,
     shares: Vec<f64>,
 }
 
-/// Moves positions by the shares of a joint.
+/// Moves positions with the smoothing factors of a joint.
 fn follow<T: Real>(root: &Shares, values: &[T], out: &mut [T]) {
     let Some(begin) = root.begin else {
         out.copy_from_slice(values);
@@ -151,34 +151,34 @@ pub(super) struct Record {
     /// The sample, of any length, and then the result.
     pub(super) rotation: [Lane; 4],
     /// Confidence of the sample.
-    pub(super) trust: Lane,
-    /// By which part of the way to the sample the result moved.
+    pub(super) confidence: Lane,
+    /// The fraction of the displacement to the sample by which the result moved.
     share: Lane,
 }
 
 impl Record {
-    /// A sample of each joint that stands still at the identity, with confidence.
+    /// A constant sample of each joint at the identity, with confidence.
     pub(super) const STILL: Self = Self {
         rotation: [[1.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]],
-        trust: [1.0; LANES],
+        confidence: [1.0; LANES],
         share: [0.0; LANES],
     };
 }
 
-/// What the filter knows of [`LANES`] joints.
+/// State of the filter for [`LANES`] joints.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct State {
     /// The last sample.
     sample: [Lane; 4],
     result: [Lane; 4],
-    /// Radians per frame.
+    /// Angular velocity, radians per frame.
     velocity: [Lane; 3],
     /// Frames since the last sample; 0 before the first.
     elapsed: Lane,
 }
 
 impl State {
-    /// Before the first sample.
+    /// The state before the first sample.
     pub(super) fn nothing() -> Self {
         let still = Record::STILL.rotation;
         Self { sample: still, result: still, velocity: [[0.0; LANES]; 3], elapsed: [0.0; LANES] }
@@ -186,29 +186,29 @@ impl State {
 }
 
 multiversion! {
-    /// Makes results of samples.
+    /// Replaces samples by results.
     pub(super) fn forward(records: &mut [Record], cutoffs: &Cutoffs, state: &mut State) {
         let mut now = *state;
         for record in records {
             let mut after = *record;
             for i in 0..LANES {
-                let (sample, trust) = (unit(of_lane(&after.rotation, i)), after.trust[i]);
+                let (sample, confidence) = (unit(of_lane(&after.rotation, i)), after.confidence[i]);
                 let (before, velocity) = (of_lane(&now.result, i), of_lane(&now.velocity, i));
-                let measured = trust > 0.0;
+                let measured = confidence > 0.0;
                 let begun = now.elapsed[i] > 0.0;
                 let elapsed = if begun { now.elapsed[i] } else { 1.0 };
                 let last = of_lane(&now.sample, i);
                 let turned = scaled(log_short(between(last, sample)), 2.0);
-                let follows = if begun { trust * low_pass(cutoffs.derivative[i], elapsed) } else { 0.0 };
+                let follows = if begun { confidence * low_pass(cutoffs.derivative[i], elapsed) } else { 0.0 };
                 let velocity = [
                     velocity[0] + follows * (turned[0] / elapsed - velocity[0]),
                     velocity[1] + follows * (turned[1] / elapsed - velocity[1]),
                     velocity[2] + follows * (turned[2] / elapsed - velocity[2]),
                 ];
                 let speed = (velocity[0] * velocity[0] + velocity[1] * velocity[1] + velocity[2] * velocity[2]).sqrt();
-                let share = trust * low_pass(cutoffs.least[i] + cutoffs.beta[i] * speed, elapsed);
+                let share = confidence * low_pass(cutoffs.least[i] + cutoffs.beta[i] * speed, elapsed);
                 let moved = product(before, exp_one(scaled(log_short(between(before, sample)), share)));
-                // A joint that has not begun is where its sample is.
+                // Before its first sample a joint is at its sample.
                 let result = select(begun, select(measured, moved, before), sample);
                 set_lane(&mut after.rotation, i, result);
                 after.share[i] = share;
@@ -224,7 +224,7 @@ multiversion! {
     }
 }
 
-/// The share of a sample in a low pass of first order, `elapsed` frames after the one before.
+/// Smoothing factor of a first-order low pass, `elapsed` frames after the previous sample.
 #[inline(always)]
 fn low_pass(cutoff: f64, elapsed: f64) -> f64 {
     1.0 / (1.0 + 1.0 / (2.0 * std::f64::consts::PI * cutoff * elapsed))

@@ -1,4 +1,4 @@
-//! Orientation filters: a mask for numbers becomes a filter for rotations.
+//! Orientation filters: a linear mask becomes a filter for rotations.
 //!
 //! J. Lee and S. Y. Shin, "General construction of time-domain filters for orientation data". With the increments
 //! `ω_i = log(q_i⁻¹ q_{i+1})` and a mask `m_{−k} … m_k` whose sum is 1:
@@ -9,7 +9,7 @@
 //! ```
 
 pub use super::local::Translation;
-use super::local::{self, Local, Way};
+use super::local::{self, Increments, Local};
 use super::samples::LANE;
 use crate::clip::Planes;
 use crate::parallel::Interrupt;
@@ -22,9 +22,9 @@ use crate::{ClipMut, ClipView, Error, Real};
 pub struct OrientationFilter {
     /// Weights of the frames `t − k … t + k`, in any scale.
     pub mask: Vec<f64>,
-    /// How often the filter is applied.
+    /// Number of times that the filter is applied.
     pub iterations: usize,
-    /// How the clip goes on beyond its ends, anew for each pass.
+    /// Continuation of the clip beyond its ends, recomputed for each pass.
     pub boundary: Boundary,
 }
 
@@ -35,8 +35,8 @@ impl OrientationFilter {
     /// No sample may be missing. Quaternions need not have length 1 exactly.
     ///
     /// # Errors
-    /// [`Error::Length`] if slices do not fit together; [`Error::Parameter`] for a mask of even length or without a sum;
-    /// [`Error::Interrupted`].
+    /// [`Error::Length`] if the lengths of slices do not agree; [`Error::Parameter`] for a mask of even length or
+    /// with the sum 0; [`Error::Interrupted`].
     pub fn filter<T: Real>(
         &self,
         clip: ClipView<'_, T>,
@@ -69,7 +69,7 @@ impl OrientationFilter {
     }
 }
 
-/// The filter as it is applied.
+/// The mask as coefficients of increments.
 struct Mask<T> {
     coefficients: Vec<T>,
 }
@@ -83,9 +83,9 @@ impl<T: Real> Local<T> for Mask<T> {
         20 + self.coefficients.len()
     }
 
-    fn moves(&self, _: usize, _: usize, _: [&[T]; 4], ways: &mut [Way<'_, T>], _: &mut Planes<T>) {
-        for way in ways {
-            for (steps, moves) in way.steps.into_iter().zip(&mut way.moves) {
+    fn moves(&self, _: usize, _: usize, _: [&[T]; 4], paths: &mut [Increments<'_, T>], _: &mut Planes<T>) {
+        for path in paths {
+            for (steps, moves) in path.steps.into_iter().zip(&mut path.moves) {
                 weighted_sums(steps, &self.coefficients, moves);
             }
         }
@@ -93,7 +93,7 @@ impl<T: Real> Local<T> for Mask<T> {
 }
 
 multiversion! {
-    /// Weighted sums of the steps from each frame's first on, for a multiple of [`LANE`] frames.
+    /// Weighted sums of the increments around each frame, for a multiple of [`LANE`] frames.
     fn weighted_sums<T: Real>(steps: &[T], coefficients: &[T], sums: &mut [T]) {
         let (blocks, _) = sums.as_chunks_mut::<LANE>();
         for (block, sums) in blocks.iter_mut().enumerate() {

@@ -4,11 +4,11 @@ use crate::Real;
 use crate::rotations::quaternion::{dot, exp_one, log_one, product};
 use crate::simd::multiversion;
 
-/// Frames that a loop over lags keeps at hand: four vectors of float32 at the widest level.
+/// Frames per block of a loop over lags: four vectors of float32 at the widest level.
 pub(super) const LANE: usize = 64;
 
 multiversion! {
-    /// Copies samples, turning the signs of those that are marked.
+    /// Copies samples, and negates those that are marked.
     pub(super) fn copy_signed<T: Real>(samples: &[[T; 4]], flips: &[u8], out: &mut [[T; 4]]) {
         let n = samples.len();
         let (flips, out) = (&flips[..n], &mut out[..n]);
@@ -62,7 +62,7 @@ multiversion! {
     }
 }
 
-/// Up to [`LANE`] samples, `step` apart, as planes; the rest is the identity.
+/// Up to [`LANE`] samples, `step` apart, as planes, padded with the identity.
 #[inline(always)]
 fn gather<T: Real>(samples: &[[T; 4]], step: usize) -> [[T; LANE]; 4] {
     let mut near = [[T::ONE, T::ZERO, T::ZERO, T::ZERO]; LANE];
@@ -129,7 +129,7 @@ fn scatter<T: Real>(q: &[[T; LANE]; 4], out: &mut [[T; 4]], step: usize) {
 multiversion! {
     /// Whether the inner product of any pair is negative.
     pub(super) fn turns<T: Real>(before: &[[T; 4]], after: &[[T; 4]]) -> bool {
-        /// Pairs at once: one vector of float32 at the widest level.
+        /// Pairs per iteration: one vector of float32 at the widest level.
         const PAIRS: usize = 16;
         let mut least = [T::ZERO; PAIRS];
         let n = before.len().min(after.len());

@@ -1,4 +1,4 @@
-//! Savitzky and Golay's filter: polynomials fitted to windows, on rotations about their reference path.
+//! The Savitzky–Golay filter: polynomials fitted to windows, on rotations about their reference path.
 
 use super::columns::{extend, slide};
 use super::development::{Columns, Input, Smooth, interleave};
@@ -11,11 +11,11 @@ use crate::{Error, Real};
 /// The parameters of the filter.
 #[derive(Debug, Clone)]
 pub struct Savgol {
-    /// Frames of a window, an odd number.
+    /// Window length in frames, odd.
     pub window: usize,
-    /// Coefficients of the polynomial from the numbers in the window, `(terms, window)`.
+    /// Matrix from the values in the window to the coefficients of the polynomial, `(terms, window)`.
     pub fit: Vec<f64>,
-    /// Values of the polynomial at the frames of the window from its coefficients, `(window, terms)`.
+    /// Matrix from the coefficients to the values of the polynomial at the frames of the window, `(window, terms)`.
     pub values: Vec<f64>,
 }
 
@@ -24,14 +24,15 @@ impl Savgol {
         self.fit.len() / self.window
     }
 
-    /// The derivative of rotations in the frame of the body: `(frames, joints, 3)`.
+    /// Time derivative of rotations in body coordinates: `(frames, joints, 3)`.
     ///
-    /// The rotations are smoothed, and developed again about the result; of their vectors about it the polynomials are taken
-    /// whose `derivatives` at the frames of the window are, `(window, terms)`, given by their coefficients.
+    /// The rotations are smoothed and developed again about the result. Polynomials are fitted to the new vectors;
+    /// the matrix `derivatives`, `(window, terms)`, maps their coefficients to derivatives at the frames of the
+    /// window.
     ///
     /// # Errors
-    /// [`Error::Length`] if slices do not fit together; [`Error::Parameter`] if the window is longer than the clip;
-    /// [`Error::Interrupted`].
+    /// [`Error::Length`] if the lengths of slices do not agree; [`Error::Parameter`] if the window is longer than the
+    /// clip; [`Error::Interrupted`].
     pub fn derivative<T: Real>(
         &self,
         input: Input<'_, T>,
@@ -68,7 +69,7 @@ impl Savgol {
         interleave(&results, (3, 0..3), 0..joints, joints, out)
     }
 
-    /// Writes what the polynomial of the numbers `x` of a window has at the frames from `first` on.
+    /// Evaluates the polynomial fitted to the values `x` of a window, at its frames from `first` on.
     fn evaluate(&self, x: &[f64], first: usize, out: &mut [f64]) {
         out.fill(0.0);
         for (term, weights) in self.fit.chunks_exact(self.window).enumerate() {

@@ -1,8 +1,8 @@
 //! Blender's "Smooth Keys": a weighted moving mean over five frames.
 //!
-//! For the numbers `p₂ p₁ c n₁ n₂` around a frame, the mean of `(3p₂ + 5p₁ + 2c + n₁ + n₂)/12` and
-//! `(p₂ + p₁ + 2c + 5n₁ + 3n₂)/12`. The end frames stay. At frames 1 and 2, `p₁` stands for `p₂`, and at the last but one `n₁`
-//! for `n₂`: so does Blender, whose test for a second-previous key is `i − 2 > 0`.
+//! For the values `p₂ p₁ c n₁ n₂` around a frame, the mean of `(3p₂ + 5p₁ + 2c + n₁ + n₂)/12` and `(p₂ + p₁ + 2c +
+//! 5n₁ + 3n₂)/12`. The end frames are unchanged. At frames 1 and 2, `p₁` replaces `p₂`, and at the last but one `n₁`
+//! replaces `n₂`: as in Blender, whose test for a second-previous key is `i − 2 > 0`.
 
 use super::development::{Columns, Smooth};
 use crate::clip::Planes;
@@ -13,7 +13,7 @@ use crate::{Error, Real};
 /// The parameters of the filter.
 #[derive(Debug, Clone, Copy)]
 pub struct WeightedMovingMean {
-    /// How often the filter is applied.
+    /// Number of times that the filter is applied.
     pub iterations: usize,
 }
 
@@ -63,7 +63,7 @@ fn pass(before: &[f64], out: &mut [f64]) {
 }
 
 multiversion! {
-    /// The frames from 3 on that have two neighbours on either side.
+    /// The frames from 3 on with two neighbours on either side.
     fn inner<T: Real>(before: &[T], out: &mut [T]) {
         let n = out.len();
         let around: [&[T]; 5] = std::array::from_fn(|j| &before[1 + j..1 + j + n]);

@@ -1,12 +1,12 @@
-//! Eigenvectors of small symmetric matrices, by Jacobi's rotations.
+//! Eigenvectors of small symmetric matrices, by Jacobi's method.
 
-/// Sweeps at most; each one squares what is left beside the diagonal.
+/// Largest number of sweeps; each one squares the remaining off-diagonal elements.
 const SWEEPS: usize = 30;
 
-/// Turns `matrix` until it is diagonal; `turn` hears of each rotation of two rows.
-fn diagonalise<const N: usize>(matrix: &mut [[f64; N]; N], mut turn: impl FnMut(usize, usize, f64, f64)) {
+/// Rotates `matrix` until it is diagonal; calls `rotate` for each rotation of two rows.
+fn diagonalise<const N: usize>(matrix: &mut [[f64; N]; N], mut rotate: impl FnMut(usize, usize, f64, f64)) {
     for _ in 0..SWEEPS {
-        let mut turned = false;
+        let mut rotated = false;
         for p in 0..N {
             for q in p + 1..N {
                 let beside = matrix[p][q];
@@ -14,7 +14,7 @@ fn diagonalise<const N: usize>(matrix: &mut [[f64; N]; N], mut turn: impl FnMut(
                 if beside.abs() <= f64::EPSILON * 0.5 * (a * b).abs().sqrt() || beside == 0.0 {
                     continue;
                 }
-                turned = true;
+                rotated = true;
                 let theta = (b - a) / (2.0 * beside);
                 let tangent = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
                 let cosine = 1.0 / (tangent * tangent + 1.0).sqrt();
@@ -23,10 +23,10 @@ fn diagonalise<const N: usize>(matrix: &mut [[f64; N]; N], mut turn: impl FnMut(
                     (row[p], row[q]) = (cosine * row[p] - sine * row[q], sine * row[p] + cosine * row[q]);
                 }
                 rotate_rows(matrix, p, q, cosine, sine);
-                turn(p, q, cosine, sine);
+                rotate(p, q, cosine, sine);
             }
         }
-        if !turned {
+        if !rotated {
             break;
         }
     }
@@ -39,7 +39,7 @@ fn rotate_rows<const N: usize>(matrix: &mut [[f64; N]; N], p: usize, q: usize, c
     }
 }
 
-/// Eigenvalues, the least first.
+/// Eigenvalues in ascending order.
 pub(super) fn values<const N: usize>(mut matrix: [[f64; N]; N]) -> [f64; N] {
     diagonalise(&mut matrix, |_, _, _, _| ());
     let mut values: [f64; N] = std::array::from_fn(|i| matrix[i][i]);
@@ -47,7 +47,7 @@ pub(super) fn values<const N: usize>(mut matrix: [[f64; N]; N]) -> [f64; N] {
     values
 }
 
-/// Eigenvectors, that of the least eigenvalue first; their largest component is positive.
+/// Eigenvectors in ascending order of their eigenvalues; their largest component is positive.
 pub(super) fn vectors<const N: usize>(mut matrix: [[f64; N]; N]) -> [[f64; N]; N] {
     let mut vectors: [[f64; N]; N] =
         std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }));

@@ -1,48 +1,48 @@
-//! Cuts between behaviours, where the error of a few principal geodesics begins to grow faster than before.
+//! Segmentation into behaviours: a cut is where the error of a few principal geodesics begins to grow faster.
 //!
-//! J. Barbič et al. 2004, their PCA-SEG, on rotations: a segment is described by principal geodesics that are fitted to all
-//! of its frames so far. As long as it goes on, the sum of the squared errors grows at a steady rate; a new behaviour makes
-//! it grow faster. The geodesics are those of the squared sine: with the moments `M = Σ q qᵀ` of a joint, the great sphere
-//! of `k` dimensions that lies nearest is spanned by the eigenvectors of the `k + 1` largest eigenvalues, and the others sum
-//! up to `Σ sin² d`.
+//! J. Barbič et al. 2004, PCA-SEG, on rotations. A segment is described by principal geodesics fitted to all of its
+//! frames so far. While the behaviour lasts, the sum of the squared errors grows at a steady rate; a new behaviour
+//! makes it grow faster. The geodesics are those of the squared sine. With the moments `M = Σ q qᵀ` of a joint, the
+//! nearest great sphere of `k` dimensions is spanned by the eigenvectors of the `k + 1` largest eigenvalues, and the
+//! other eigenvalues sum to `Σ sin² d`.
 
 use crate::geodesics::eigen;
 use crate::parallel::{self, Interrupt};
 use crate::rotations::quaternion::{is_missing, unit};
 use crate::{ClipView, Error, Real};
 
-/// Root mean square of the error (unit: sine of half of a rotation angle, 0.1°) below which nobody sees that it grows.
+/// Root mean square of the error below which its growth is invisible (sine of half a rotation angle; 0.1°).
 const STILL: f64 = 1e-3;
 
-/// Frames whose errors are computed at once.
+/// Frames whose errors are computed together.
 const BLOCK: usize = 512;
 
-/// Estimated nanoseconds for the eigenvalues of a joint in a frame.
+/// Estimated nanoseconds for the eigenvalues of one joint and frame.
 const NANOSECONDS: usize = 800;
 
-/// How cuts are found.
+/// Parameters of the segmentation.
 #[derive(Debug, Clone, Copy)]
 pub struct Segment {
     /// Geodesics per joint: 1 or 2.
     pub components: usize,
-    /// Frames at the beginning of a segment in which no cut is looked for.
+    /// Frames at the beginning of a segment in which no cut is searched.
     pub window: usize,
-    /// Frames of each segment, at least.
+    /// Minimum length of a segment in frames.
     pub min_length: usize,
-    /// Frames over which the growth of the error is taken; at least 1.
+    /// Frames over which the growth of the error is measured; at least 1.
     pub lag: usize,
-    /// By how many deviations the growth must exceed its mean.
+    /// Number of standard deviations by which the growth must exceed its mean.
     pub threshold: f64,
 }
 
-/// Cuts, and what they follow from.
+/// Cuts, and the criterion behind them.
 #[derive(Debug, Clone)]
 pub struct Segments {
-    /// First frames of new behaviours, rising.
+    /// First frames of new behaviours, in ascending order.
     pub cuts: Vec<usize>,
-    /// Per frame the growth of the error; NaN where the segment is too young.
+    /// Growth of the error per frame; NaN at the beginning of segments.
     pub growth: Vec<f64>,
-    /// What it was compared with; NaN where it was not.
+    /// Threshold of the growth; NaN where it was not tested.
     pub limit: Vec<f64>,
 }
 
@@ -71,7 +71,7 @@ impl Segment {
         Ok(found)
     }
 
-    /// The cut after `start`.
+    /// The first cut after `start`.
     fn next<T: Real>(
         &self,
         clip: ClipView<'_, T>,
@@ -112,7 +112,8 @@ impl Segment {
         Ok(None)
     }
 
-    /// Sums of the squared errors after each frame of a block; `moments` are those of all frames before, and then after.
+    /// Sums of the squared errors after each frame of a block; `moments` are updated from the frames before to the
+    /// end of the block.
     fn errors<T: Real>(
         &self,
         block: ClipView<'_, T>,

@@ -1,11 +1,11 @@
-//! Poses as vectors whose distances are those of the poses.
+//! Poses as feature vectors: the distance of two vectors is the distance of the poses.
 
 use crate::error::check_length;
 use crate::rotations::quaternion::{between, is_missing, log_short};
 use crate::simd::multiversion;
 use crate::{ClipView, Error, Real, parallel};
 
-/// Frames of a joint that are computed together: the planes of one joint stay in the first-level cache.
+/// Frames of a joint that are computed together: the planes of one joint fit in the first-level cache.
 const TILE: usize = 64;
 
 /// Tiles per task.
@@ -15,7 +15,7 @@ const TILES: usize = 16;
 const NANOSECONDS: usize = 4;
 
 multiversion! {
-    /// Features `(frames, 3·joints)` of up to [`TILE`] frames; `means` are `(joints)`, and `scales` twice the roots of weights.
+    /// Features `(frames, 3·joints)` of up to [`TILE`] frames; `means` are `(joints)`, and `scales` are `2 √weight`.
     fn tile<T: Real>(rotations: &[T], means: &[[T; 4]], scales: &[T], out: &mut [T]) {
         let joints = means.len();
         for (joint, (&mean, &scale)) in means.iter().zip(scales).enumerate() {
@@ -43,11 +43,12 @@ multiversion! {
     }
 }
 
-/// Poses as rotation vectors from the means `(joints, 4)` of their joints, times the roots of weights `(joints)`:
-/// `x_j = √w_j · 2 log(m_j⁻¹ q_j)`, each the shorter way, `(frames, 3·joints)`; NaN where a sample is missing.
+/// Poses as rotation vectors relative to the means `(joints, 4)` of their joints, scaled by the square roots of
+/// `weights`, `(joints)`: `x_j = √w_j · 2 log(m_j⁻¹ q_j)`, `(frames, 3·joints)`. The shorter rotation is taken; NaN
+/// where a sample is missing.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit.
+/// [`Error::Length`] if the lengths of slices do not agree.
 pub fn pose_features<T: Real>(
     q: ClipView<'_, T>,
     means: &[f64],

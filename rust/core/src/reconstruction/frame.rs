@@ -1,30 +1,31 @@
-//! Where a pose stands: heading about the up axis, and the place of the root.
+//! Position and heading of the root about the up axis.
 
 use crate::Real;
 use std::f64::consts::TAU;
 
-/// The two level axes of each up axis, in the order in which a turn by 90 degrees about it takes the first to the second.
+/// The two horizontal axes for each up axis, ordered so that a rotation by 90° about the up axis takes the first to
+/// the second.
 pub const HORIZONTAL: [[usize; 2]; 3] = [[1, 2], [2, 0], [0, 1]];
 
-/// Angle of the turn of a rotation about the axis `up`, in `[−π, π]`, radians; 0 where a body hangs head down.
+/// Heading: the rotation angle about the axis `up`, in `[−π, π]`, radians; 0 where the up axis points down.
 #[must_use]
 pub fn heading(q: [f64; 4], up: usize) -> f64 {
     let along = q[1 + up] * 1.0_f64.copysign(q[0]);
     (2.0 * along.abs().atan2_nonnegative(q[0].abs())).copysign(along)
 }
 
-/// Quaternion of a turn about the axis `up` by an angle in radians.
+/// Quaternion of a rotation about the axis `up` by an angle in radians.
 #[must_use]
-pub fn turn(angle: f64, up: usize) -> [f64; 4] {
+pub fn rotation_about(angle: f64, up: usize) -> [f64; 4] {
     let (sine, cosine) = Real::sin_cos(0.5 * (angle % (2.0 * TAU)));
     let mut q = [cosine, 0.0, 0.0, 0.0];
     q[1 + up] = sine;
     q
 }
 
-/// A step along the two level axes of a frame of this heading, as the world sees it.
+/// World coordinates of a step along the two horizontal axes of a frame with the heading `angle`.
 #[must_use]
-pub fn turned(step: [f64; 2], angle: f64, up: usize) -> [f64; 3] {
+pub fn rotated(step: [f64; 2], angle: f64, up: usize) -> [f64; 3] {
     let [first, second] = HORIZONTAL[up];
     let (sine, cosine) = Real::sin_cos(angle % TAU);
     let mut result = [0.0; 3];

@@ -1,6 +1,6 @@
-//! The heading of a body: how far its root is turned about the vertical.
+//! Heading of a body: the rotation angle of its root about the vertical.
 //!
-//! One joint of many, gone through once: in float64 and on the calling thread, since each heading continues the one before.
+//! One joint in one pass, in float64 and on the calling thread: each heading continues the previous one.
 
 use crate::error::check_length;
 use crate::rotations::quaternion::{is_missing, of_row, product};
@@ -13,13 +13,14 @@ fn twist(q: [f64; 4], up: usize) -> f64 {
     (2.0 * along.abs().atan2_nonnegative(q[0].abs())).copysign(along)
 }
 
-/// Splits rotations `(frames, 4)` into headings about the axis `up` (0, 1 or 2), `(frames)`, and what is left, `(frames, 4)`.
+/// Splits rotations `(frames, 4)` into headings about the axis `up` (0, 1 or 2), `(frames)`, and the remaining
+/// rotations, `(frames, 4)`.
 ///
-/// Headings have no jumps from one valid sample to the next. The rest is that of the heading as it was rounded to `T`. Both are
-/// NaN at missing samples.
+/// Headings have no jumps from one valid sample to the next. The remaining rotation is relative to the heading as
+/// rounded to `T`. Both are NaN at missing samples.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit; [`Error::Parameter`] if `up` is no axis.
+/// [`Error::Length`] if the lengths of slices do not agree; [`Error::Parameter`] if `up` is not 0, 1 or 2.
 pub fn split_heading<T: Real>(
     roots: &[T],
     up: usize,

@@ -1,52 +1,54 @@
-//! Where control points are, and how they move with the coordinates of a pose.
+//! Forward kinematics of the control points and its Jacobian.
 //!
-//! The coordinates of a pose are a rotation vector for each joint and four numbers for the root's way: joint `j` turns by
-//! `c_j exp(x_j / 2)` from its centre `c_j`; the root moreover by its heading, which is that of the frame before and a turn.
-//! It stands a step ahead of its place in the frame before, as seen in that frame's heading, and at a height of its own:
-//! `x = [3·J joint coordinates, forward, sideways, height, turn]`.
+//! The coordinates of a pose are a rotation vector for each joint and four numbers for the root's displacement. Joint
+//! `j` has the rotation `c_j exp(x_j / 2)` with its centre `c_j`. The root is rotated in addition by its heading: the
+//! previous heading plus a change. Its position is the previous position plus a step in the frame of the previous
+//! heading; its height is absolute: `x = [3·J joint coordinates, forward, sideways, height, heading change]`.
 //!
-//! Joints that no control point hangs below do not matter to it: all that is computed is of the chains above.
+//! Joints without a control point below them do not affect the control points: only the chains above control points
+//! are computed.
 
-use super::frame::{turn, turned};
+use super::frame::{rotated, rotation_about};
 use crate::Error;
 use crate::Real;
 use crate::rotations::quaternion::{exp_one, of_row, product, rotate};
 
-/// Coordinates of the root's way.
-pub const WAY: usize = 4;
+/// Number of coordinates of the root's displacement.
+pub const ROOT: usize = 4;
 
-/// Radians²: below, two terms of the series are good to the last digits of float64, and `θ − sin θ` is not.
+/// Squared angle, radians², below which two terms of the series are accurate to float64 and `θ − sin θ` is not.
 const SMALL_SQUARE: f64 = 1e-4;
 
-/// A 3 × 3 matrix by rows.
+/// A 3 × 3 matrix, row by row.
 pub(super) type Matrix = [[f64; 3]; 3];
 
-/// A skeleton, and which joints are control points.
+/// A skeleton with its control points.
 #[derive(Debug, Clone)]
 pub struct Body {
     /// The axis that points up.
     pub up: usize,
     joints: usize,
-    /// Of the joints above control points, and these: parents first.
+    /// The control points and the joints above them, parents first.
     active: Vec<Joint>,
-    /// The place of each control point in `active`.
+    /// The index of each control point in `active`.
     points: Vec<usize>,
 }
 
-/// A joint above a control point.
+/// A control point or a joint above one.
 #[derive(Debug, Clone, Copy)]
 struct Joint {
-    number: usize,
-    /// Its parent's place among the active joints.
+    index: usize,
+    /// Index of its parent among the active joints.
     parent: Option<usize>,
     offset: [f64; 3],
 }
 
 impl Body {
-    /// A skeleton of one root, the first joint, with offsets `(joints, 3)`, and some joints as control points.
+    /// A skeleton with one root, the first joint, and offsets `(joints, 3)`; `points` are the joints that are control
+    /// points.
     ///
     /// # Errors
-    /// [`Error::Length`] and [`Error::Parameter`] if these do not fit each other.
+    /// [`Error::Length`] and [`Error::Parameter`] if these do not agree.
     pub fn new(
         parents: &[Option<usize>],
         offsets: &[f64],
@@ -71,70 +73,74 @@ impl Body {
                 joint = parents[j];
             }
         }
-        let mut place = vec![0; joints];
+        let mut slot = vec![0; joints];
         let mut active = Vec::new();
         for joint in (0..joints).filter(|&joint| wanted[joint]) {
-            place[joint] = active.len();
+            slot[joint] = active.len();
             let offset = [offsets[joint * 3], offsets[joint * 3 + 1], offsets[joint * 3 + 2]];
-            active.push(Joint { number: joint, parent: parents[joint].map(|parent| place[parent]), offset });
+            active.push(Joint { index: joint, parent: parents[joint].map(|parent| slot[parent]), offset });
         }
-        let points = points.iter().map(|&point| place[point]).collect();
+        let points = points.iter().map(|&point| slot[point]).collect();
         Ok(Self { up, joints, active, points })
     }
 
-    /// How many joints the skeleton has.
+    /// Number of joints of the skeleton.
     #[must_use]
     pub fn joints(&self) -> usize {
         self.joints
     }
 
-    /// How many control points there are.
+    /// Number of control points.
     #[must_use]
     pub fn points(&self) -> usize {
         self.points.len()
     }
 
-    /// How many coordinates a pose has.
+    /// Number of coordinates of a pose.
     #[must_use]
     pub fn coordinates(&self) -> usize {
-        3 * self.joints + WAY
+        3 * self.joints + ROOT
     }
 
-    /// The coordinates that move control points, in the order of the columns of the Jacobian.
+    /// The coordinates that move control points, in the order of the Jacobian's columns.
     #[must_use]
     pub fn columns(&self) -> Vec<usize> {
-        let of_joints = self.active.iter().flat_map(|joint| (0..3).map(move |i| 3 * joint.number + i));
+        let of_joints = self.active.iter().flat_map(|joint| (0..3).map(move |i| 3 * joint.index + i));
         of_joints.chain(3 * self.joints..self.coordinates()).collect()
     }
 }
 
-/// Where coordinates are measured from.
+/// Origin of the coordinates.
 #[derive(Debug, Clone)]
 pub struct Base {
-    /// Rotations at the origin, `(joints, 4)`; that of the root without a heading.
+    /// Rotations of all joints at the origin, `(joints, 4)`; the root's without its heading.
     pub centres: Vec<f64>,
-    /// Where the root was in the frame before; its height does not matter.
+    /// Position of the root in the previous frame; its height is not used.
     pub place: [f64; 3],
-    /// Its heading then, radians.
+    /// Heading of the root in the previous frame, radians.
     pub heading: f64,
 }
 
 impl Base {
-    /// Rotation of a joint relative to its parent; of the root with its heading.
+    /// Rotation of a joint relative to its parent; the root's includes its heading.
     fn rotation(&self, joint: usize, x: &[f64], up: usize, joints: usize) -> [f64; 4] {
         let half = [0.5 * x[3 * joint], 0.5 * x[3 * joint + 1], 0.5 * x[3 * joint + 2]];
         let rotation = product(of_row(&self.centres[4 * joint..]), exp_one(half));
-        if joint == 0 { product(turn(self.heading + x[3 * joints + 3], up), rotation) } else { rotation }
+        if joint == 0 {
+            product(rotation_about(self.heading + x[3 * joints + 3], up), rotation)
+        } else {
+            rotation
+        }
     }
 
     fn position(&self, x: &[f64], up: usize, joints: usize) -> [f64; 3] {
-        let step = turned([x[3 * joints], x[3 * joints + 1]], self.heading, up);
+        let step = rotated([x[3 * joints], x[3 * joints + 1]], self.heading, up);
         let mut position: [f64; 3] = std::array::from_fn(|i| self.place[i] + step[i]);
         position[up] = x[3 * joints + 2];
         position
     }
 
-    /// Writes the rotations `(joints, 4)`, the root's with its heading, and returns the root's position.
+    /// Writes the rotations `(joints, 4)`, the root's including its heading, and returns the root's position.
     pub fn pose(&self, x: &[f64], up: usize, rotations: &mut [f64]) -> [f64; 3] {
         let joints = rotations.len() / 4;
         for (joint, out) in rotations.chunks_exact_mut(4).enumerate() {
@@ -144,75 +150,76 @@ impl Base {
     }
 }
 
-/// The active joints of a pose, and how control points move with the coordinates.
+/// Positions, rotations and Jacobians of the active joints of a pose.
 #[derive(Debug, Clone)]
 pub(super) struct Points {
     columns: usize,
-    places: Vec<[f64; 3]>,
-    turns: Vec<[f64; 4]>,
-    spins: Vec<Matrix>,
+    positions: Vec<[f64; 3]>,
+    rotations: Vec<[f64; 4]>,
+    jacobians: Vec<Matrix>,
 }
 
 impl Points {
     pub(super) fn new(body: &Body) -> Self {
         let count = body.active.len();
         Self {
-            columns: 3 * count + WAY,
-            places: vec![[0.0; 3]; count],
-            turns: vec![[0.0; 4]; count],
-            spins: vec![[[0.0; 3]; 3]; count],
+            columns: 3 * count + ROOT,
+            positions: vec![[0.0; 3]; count],
+            rotations: vec![[0.0; 4]; count],
+            jacobians: vec![[[0.0; 3]; 3]; count],
         }
     }
 
-    /// How many coordinates move control points.
+    /// Number of coordinates that move control points.
     pub(super) fn columns(&self) -> usize {
         self.columns
     }
 
-    /// Moves the joints to the coordinates of a pose.
+    /// Computes the joints for the coordinates `x`.
     pub(super) fn place(&mut self, body: &Body, base: &Base, x: &[f64]) {
         for (i, joint) in body.active.iter().enumerate() {
-            let local = base.rotation(joint.number, x, body.up, body.joints);
+            let local = base.rotation(joint.index, x, body.up, body.joints);
             if let Some(parent) = joint.parent {
-                let bone = rotate(self.turns[parent], joint.offset);
-                self.places[i] = std::array::from_fn(|c| self.places[parent][c] + bone[c]);
-                self.turns[i] = product(self.turns[parent], local);
+                let bone = rotate(self.rotations[parent], joint.offset);
+                self.positions[i] = std::array::from_fn(|c| self.positions[parent][c] + bone[c]);
+                self.rotations[i] = product(self.rotations[parent], local);
             } else {
-                self.places[i] = base.position(x, body.up, body.joints);
-                self.turns[i] = local;
+                self.positions[i] = base.position(x, body.up, body.joints);
+                self.rotations[i] = local;
             }
-            let own = [x[3 * joint.number], x[3 * joint.number + 1], x[3 * joint.number + 2]];
-            self.spins[i] = times(&matrix(self.turns[i]), &turning(own));
+            let own = [x[3 * joint.index], x[3 * joint.index + 1], x[3 * joint.index + 2]];
+            self.jacobians[i] = times(&matrix(self.rotations[i]), &right_jacobian(own));
         }
     }
 
-    /// Where a control point is, and its global rotation.
+    /// Position and global rotation of a control point.
     pub(super) fn at(&self, body: &Body, point: usize) -> ([f64; 3], [f64; 4]) {
         let joint = body.points[point];
-        (self.places[joint], self.turns[joint])
+        (self.positions[joint], self.rotations[joint])
     }
 
-    /// How a control point turns with the coordinates: angular velocities in the world, `(3, columns)`.
-    pub(super) fn turning_rows(&self, body: &Body, point: usize, rows: &mut [f64]) {
+    /// Rotation Jacobian of a control point: angular velocities in the world frame per coordinate, `(3, columns)`.
+    pub(super) fn rotation_rows(&self, body: &Body, point: usize, rows: &mut [f64]) {
         rows.fill(0.0);
         let mut next = Some(body.points[point]);
         while let Some(joint) = next {
-            for (row, spin) in rows.chunks_exact_mut(self.columns).zip(&self.spins[joint]) {
-                row[3 * joint..3 * joint + 3].copy_from_slice(spin);
+            for (row, jacobian) in rows.chunks_exact_mut(self.columns).zip(&self.jacobians[joint]) {
+                row[3 * joint..3 * joint + 3].copy_from_slice(jacobian);
             }
             next = body.active[joint].parent;
         }
         rows[body.up * self.columns + self.columns - 1] = 1.0;
     }
 
-    /// How a control point moves with the coordinates, `(3, columns)`.
+    /// Position Jacobian of a control point, `(3, columns)`.
     ///
-    /// A joint that turns by `ω` moves what hangs below it by `ω × (place − joint)`.
-    pub(super) fn moving_rows(&self, body: &Body, base: &Base, point: usize, rows: &mut [f64]) {
+    /// A joint with the angular velocity `ω` moves the points below it by `ω × (position − joint)`.
+    pub(super) fn position_rows(&self, body: &Body, base: &Base, point: usize, rows: &mut [f64]) {
         rows.fill(0.0);
         let columns = self.columns;
-        let place = self.places[body.points[point]];
-        let from = |joint: usize| -> [f64; 3] { std::array::from_fn(|c| place[c] - self.places[joint][c]) };
+        let place = self.positions[body.points[point]];
+        let from =
+            |joint: usize| -> [f64; 3] { std::array::from_fn(|c| place[c] - self.positions[joint][c]) };
         let mut put = |column: usize, value: [f64; 3]| {
             for (c, value) in value.into_iter().enumerate() {
                 rows[c * columns + column] = value;
@@ -222,17 +229,17 @@ impl Points {
         while let Some(joint) = next {
             let lever = from(joint);
             for i in 0..3 {
-                let spin = self.spins[joint];
-                put(3 * joint + i, cross([spin[0][i], spin[1][i], spin[2][i]], lever));
+                let jacobian = self.jacobians[joint];
+                put(3 * joint + i, cross([jacobian[0][i], jacobian[1][i], jacobian[2][i]], lever));
             }
             next = body.active[joint].parent;
         }
-        let way = columns - WAY;
-        put(way, turned([1.0, 0.0], base.heading, body.up));
-        put(way + 1, turned([0.0, 1.0], base.heading, body.up));
+        let root = columns - ROOT;
+        put(root, rotated([1.0, 0.0], base.heading, body.up));
+        put(root + 1, rotated([0.0, 1.0], base.heading, body.up));
         let axis: [f64; 3] = std::array::from_fn(|c| if c == body.up { 1.0 } else { 0.0 });
-        put(way + 2, axis);
-        put(way + 3, cross(axis, from(0)));
+        put(root + 2, axis);
+        put(root + 3, cross(axis, from(0)));
     }
 }
 
@@ -254,7 +261,7 @@ pub(super) fn transposed(a: &Matrix) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
 }
 
-/// `1 + first·[v] + second·[v]²`, with `[v]` the matrix of `v ×`.
+/// `1 + first·[v] + second·[v]²`, where `[v]` is the cross-product matrix of `v`.
 fn series(v: [f64; 3], first: f64, second: f64) -> Matrix {
     let across = cross_matrix(v);
     let twice = times(&across, &across);
@@ -272,7 +279,7 @@ pub(super) fn matrix(q: [f64; 4]) -> Matrix {
 }
 
 /// Right Jacobian of the rotation group at the rotation vector `v`: `exp(v + dv) ≈ exp(v) exp(J dv)`.
-pub(super) fn turning(v: [f64; 3]) -> Matrix {
+pub(super) fn right_jacobian(v: [f64; 3]) -> Matrix {
     let square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     let angle = square.sqrt();
     let (first, second) = if square < SMALL_SQUARE {
@@ -284,8 +291,8 @@ pub(super) fn turning(v: [f64; 3]) -> Matrix {
     series(v, -first, second)
 }
 
-/// The inverse of [`turning`]: `1 + [v]/2 + (1/θ² − (1 + cos θ)/(2θ sin θ)) [v]²`, for angles up to a half turn.
-pub(super) fn turning_inverse(v: [f64; 3]) -> Matrix {
+/// The inverse of [`right_jacobian`]: `1 + [v]/2 + (1/θ² − (1 + cos θ)/(2θ sin θ)) [v]²`, for angles up to 180°.
+pub(super) fn right_jacobian_inverse(v: [f64; 3]) -> Matrix {
     let square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     let second = if square < SMALL_SQUARE {
         1.0 / 12.0 + square / 720.0

@@ -1,4 +1,4 @@
-//! Motion from a few trajectories.
+//! Motion reconstruction from the trajectories of a few control points.
 
 pub mod features;
 pub mod frame;

@@ -1,47 +1,47 @@
-//! What frames are compared by: planes of numbers per joint.
+//! Features that frames are compared by: planes of coordinates per joint.
 
 use crate::clip::Planes;
 
-/// How two frames of a joint are compared.
+/// Distance between two samples of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// 3 planes of a vector: by the length of the difference.
+    /// 3 planes of a vector: the length of the difference.
     Vector,
-    /// 4 planes of a unit quaternion, no two of which are more than half a turn apart as they are signed: by the angle.
+    /// 4 planes of a unit quaternion: the rotation angle. With these signs, no two samples are more than 180° apart.
     Narrow,
-    /// 4 planes of a unit quaternion or its negative: by the angle.
+    /// 4 planes of a unit quaternion of either sign: the rotation angle.
     Wide,
 }
 
-/// Where a joint stands in the planes.
+/// Planes and distance of a joint.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Joint {
-    /// Its first plane.
+    /// Index of its first plane.
     pub(crate) row: usize,
-    /// How it is compared.
+    /// Its distance.
     pub(crate) kind: Kind,
 }
 
 /// Frames as planes, one column per frame.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Features<'a, T> {
-    /// The numbers that are compared.
+    /// The coordinates that are compared.
     pub(crate) planes: &'a Planes<T>,
-    /// Where each joint stands.
+    /// Planes and distance of each joint.
     pub(crate) joints: &'a [Joint],
-    /// How far each sample counts, a plane per joint; `None`: all are complete.
+    /// Weight of each sample, a plane per joint; `None`: no sample is missing.
     pub(crate) shares: Option<&'a Planes<T>>,
 }
 
-/// Frames in sequence whose patches are compared: the middles of the patches.
+/// Consecutive frames whose patches are compared: the centres of the patches.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Side<'a, T> {
     /// The frames and their surroundings.
     pub(crate) features: Features<'a, T>,
-    /// The column of the first middle.
+    /// The column of the first centre.
     pub(crate) at: usize,
-    /// The number of the first middle, by which it is known outside.
+    /// The frame index of the first centre, as callers count frames.
     pub(crate) first: usize,
-    /// How many middles.
+    /// The number of centres.
     pub(crate) count: usize,
 }

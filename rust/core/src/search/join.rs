@@ -1,8 +1,8 @@
-//! All pairs between a block of frames and a block of candidates, or those that matter.
+//! Patch distances between a block of frames and a block of candidates: all pairs, or those that may matter.
 //!
-//! With complete samples, most pairs are farther apart than the nearest candidates that are known by a bound that takes little
-//! time. What is left is measured along its diagonals. Nothing is lost: what is kept is what measuring all pairs would have kept,
-//! to the last bit.
+//! If no sample is missing, a cheap lower bound rejects most pairs: they are farther apart than the nearest
+//! candidates found so far. The distances of the remaining pairs are computed along their diagonals. The result
+//! equals that of computing all pairs, to the last bit.
 
 use super::bounds::{Bounds, COLUMNS, ROWS, Strip};
 use super::diagonal::{Diagonal, Measure};
@@ -12,20 +12,21 @@ use crate::parallel::Interrupt;
 use crate::{Error, Real};
 use std::ops::{Range, RangeInclusive};
 
-/// Frames without a candidate that matters which a run may hold: every run measures a patch more than it has frames.
+/// Longest gap, in frames, that a run of frames bridges: each run costs one patch length more than its number of
+/// frames.
 const LARGEST_HOLE: usize = 16;
 
-/// Which candidates of a frame count, by their number less that of the frame.
+/// The range of lags, candidate index minus frame index, that are compared.
 #[derive(Debug, Clone)]
 pub(crate) struct Lags {
-    /// The lags that count.
+    /// The lags that are compared,
     pub(crate) within: RangeInclusive<isize>,
-    /// Of those, the ones left out.
+    /// except for these.
     pub(crate) without: RangeInclusive<isize>,
 }
 
 impl Lags {
-    /// Candidates of another motion, all of which count.
+    /// All lags: candidates of another motion.
     pub(crate) fn all() -> Self {
         #[allow(clippy::reversed_empty_ranges, reason = "none is left out")]
         Self { within: isize::MIN..=isize::MAX, without: 1..=0 }
@@ -36,33 +37,34 @@ impl Lags {
     }
 }
 
-/// Memory that goes from block to block.
+/// Scratch memory, reused from block to block.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch<T> {
     diagonal: Diagonal<T>,
     marks: Vec<u8>,
     distances: Vec<T>,
     strip: Strip<T>,
-    /// Pairs of frames and candidates, by diagonals.
+    /// Surviving pairs of frames and candidates, packed, in order of diagonals.
     pairs: Vec<u64>,
 }
 
-/// The frames whose neighbours are sought, the candidates, and how they are compared.
+/// The query frames, the candidates, and the patch distance.
 #[derive(Debug)]
 pub(crate) struct Join<'a, T> {
     pub(crate) measure: &'a Measure<T>,
     pub(crate) frames: Side<'a, T>,
     pub(crate) candidates: Side<'a, T>,
     pub(crate) lags: Lags,
-    /// Of these candidates: where they are given, pairs that do not matter are passed over; the samples must be complete.
+    /// Bound data of the candidates. If given, pairs that cannot matter are skipped; no sample may be missing.
     pub(crate) bounds: Option<&'a Bounds<T>>,
-    /// Whether the candidates look for neighbours among the frames too: then of a clip whose frames are both, each pair is
-    /// looked at once. Bounds must be given.
+    /// Whether the candidates need neighbours among the frames too. Then each pair of frames of a clip is compared
+    /// once. Requires `bounds`.
     pub(crate) mutual: bool,
 }
 
 impl<T: Real> Join<'_, T> {
-    /// Offers to the frames whatever candidate may be among the nearest, and the other way round if they are mutual.
+    /// Offers to each frame all candidates that may be among its nearest; if `mutual`, also the frames to the
+    /// candidates.
     pub(crate) fn run(
         &self,
         lists: &Lists<T>,
@@ -71,7 +73,7 @@ impl<T: Real> Join<'_, T> {
     ) -> Result<(), Error> {
         let Some(lags) = self.lags() else { return Ok(()) };
         if let Some(bounds) = self.bounds
-            && bounds.tell(&self.frames.features)
+            && bounds.apply_to(&self.frames.features)
         {
             return self.sift(&lags, bounds, lists, scratch, interrupt);
         }
@@ -82,7 +84,7 @@ impl<T: Real> Join<'_, T> {
         Ok(())
     }
 
-    /// The diagonals, from the first frame and the first candidate of the blocks.
+    /// The range of diagonals, relative to the first frame and the first candidate of the blocks.
     fn lags(&self) -> Option<RangeInclusive<isize>> {
         let last_frame = self.frames.count.cast_signed() - 1;
         let last_candidate = self.candidates.count.cast_signed() - 1;
@@ -91,26 +93,26 @@ impl<T: Real> Join<'_, T> {
         if low > high || last_frame < 0 { None } else { Some(low..=high) }
     }
 
-    /// The lag between the numbers of the first candidate and the first frame.
+    /// Index of the first candidate minus index of the first frame.
     fn shift(&self) -> isize {
         self.candidates.first.cast_signed() - self.frames.first.cast_signed()
     }
 
-    /// The frames that meet a candidate on a diagonal.
+    /// The frames that have a candidate on a diagonal.
     fn meeting(&self, lag: isize) -> Range<usize> {
         let last = (self.candidates.count.cast_signed() - lag).max(0).cast_unsigned();
         let first = (-lag).max(0).cast_unsigned();
         first..last.min(self.frames.count).max(first)
     }
 
-    /// Measures a diagonal from a frame.
+    /// Computes the distances along a diagonal, from the frame `first` on.
     fn measure(&self, diagonal: &mut Diagonal<T>, lag: isize, first: usize, out: &mut [T]) {
         let (a, b) = (&self.frames, &self.candidates);
         let at = [a.at + first, (b.at + first).wrapping_add_signed(lag)];
         diagonal.measure(self.measure, &a.features, &b.features, at, out);
     }
 
-    /// Measures the pairs that may be near enough.
+    /// Computes the distances of the pairs that survive the bounds.
     fn sift(
         &self,
         lags: &RangeInclusive<isize>,
@@ -127,14 +129,14 @@ impl<T: Real> Join<'_, T> {
             let limits = &mut limits[..frames.len()];
             strip.load(bounds, self.measure, &self.frames, frames.clone());
             if !self.mutual {
-                self.sow(lags, &frames, lists, scratch);
+                self.seed(lags, &frames, lists, scratch);
             }
             for tile in self.tiles(&frames) {
                 interrupt.check()?;
                 lists.read_limits(self.frames.first + start, limits);
                 strip.limit(bounds, limits);
                 let candidates = tile * COLUMNS..self.candidates.count.min((tile + 1) * COLUMNS);
-                // Both of a pair are frames of the strip itself.
+                // The strip itself: both of a pair are already compared as frames.
                 let own = self.candidates.first + candidates.start == self.frames.first + start;
                 let mutual = self.mutual && !own;
                 if mutual {
@@ -164,7 +166,7 @@ impl<T: Real> Join<'_, T> {
         Ok(())
     }
 
-    /// Offers the candidates of some frames on a diagonal.
+    /// Computes the distances of a range of frames on a diagonal, and offers them.
     fn look(
         &self,
         lag: isize,
@@ -184,18 +186,19 @@ impl<T: Real> Join<'_, T> {
         }
     }
 
-    /// Offers a few candidates to frames that do not have enough yet, to know early how near the nearest are. Mutual joins need
-    /// it done for all frames before.
+    /// Offers a few candidates to frames that have fewer than `count`, so that limits are small from the start.
+    /// Mutual joins require this for all frames beforehand.
     pub(crate) fn prepare(&self, lists: &Lists<T>, scratch: &mut Scratch<T>) {
         if let Some(lags) = self.lags() {
             for start in (0..self.frames.count).step_by(ROWS) {
-                self.sow(&lags, &(start..self.frames.count.min(start + ROWS)), lists, scratch);
+                self.seed(&lags, &(start..self.frames.count.min(start + ROWS)), lists, scratch);
             }
         }
     }
 
-    /// Offers the candidates nearest in time, which often are the nearest, and where there are not enough, some of all.
-    fn sow(
+    /// Offers the candidates nearest in time, which are often the most similar. Where these are too few, offers
+    /// evenly spaced candidates.
+    fn seed(
         &self,
         lags: &RangeInclusive<isize>,
         frames: &Range<usize>,
@@ -227,7 +230,7 @@ impl<T: Real> Join<'_, T> {
         }
     }
 
-    /// The tiles of candidates that count for one of the frames, those nearest in time first.
+    /// The tiles with candidates for at least one of the frames, nearest in time first.
     fn tiles(&self, frames: &Range<usize>) -> Vec<usize> {
         let Lags { within, without } = &self.lags;
         let lag =
@@ -240,7 +243,8 @@ impl<T: Real> Join<'_, T> {
                 highest >= *within.start() && lowest <= *within.end() && !left_out
             })
             .collect();
-        // Of the pairs of two strips of the same candidates, one of both looks at them: half of them each, as on a circle.
+        // Each pair of two strips of the same clip is compared once. Every strip takes the half of the others ahead
+        // of it, as on a circle.
         let count = self.candidates.count.div_ceil(COLUMNS);
         let own = (self.frames.first + frames.start).checked_sub(self.candidates.first);
         if let Some(own) = own.map(|own| own / COLUMNS).filter(|own| self.mutual && *own < count) {
@@ -254,10 +258,10 @@ impl<T: Real> Join<'_, T> {
     }
 }
 
-/// What lags in a [`pack`] are counted from.
+/// Offset of the lags in a [`pack`].
 const ORIGIN: isize = 1 << 31;
 
-/// A lag and a frame as a number, in order of lags, then of frames: such numbers are fast to sort.
+/// A lag and a frame as one integer that sorts by lag, then by frame. Such integers are fast to sort.
 fn pack(lag: isize, frame: usize) -> u64 {
     ((lag + ORIGIN).cast_unsigned() as u64) << 32 | frame as u64
 }
@@ -271,7 +275,7 @@ fn unpack(pair: u64) -> (isize, usize) {
     ((pair >> 32) as isize - ORIGIN, (pair & u64::from(u32::MAX)) as usize)
 }
 
-/// The runs of frames on a diagonal, across holes of at most [`LARGEST_HOLE`], among packed pairs in order.
+/// The runs of frames on each diagonal in sorted packed pairs. A run bridges gaps of at most [`LARGEST_HOLE`].
 fn runs(pairs: &[u64]) -> Vec<(isize, Range<usize>)> {
     let mut runs: Vec<(isize, Range<usize>)> = Vec::new();
     for &pair in pairs {

@@ -1,11 +1,11 @@
-//! The vectorised loops: maps over the pairs of a diagonal.
+//! Vectorised loops over the pairs of a diagonal.
 
 use super::features::{Features, Kind};
 use crate::Real;
 use crate::simd::multiversion;
 use std::ops::Range;
 
-/// Squared distance of two points.
+/// Squared length of the difference of two quaternions.
 #[inline(always)]
 fn chord<T: Real>(a: [T; 4], b: [T; 4]) -> T {
     let d = [a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3]];
@@ -14,8 +14,8 @@ fn chord<T: Real>(a: [T; 4], b: [T; 4]) -> T {
 
 /// Squared angle between two rotations.
 ///
-/// Of the chords to both signs the smaller counts. Differences keep their digits where rotations are nearly equal, which an
-/// inner product does not.
+/// Takes the smaller of the chords to `b` and `−b`. Unlike an inner product, differences keep their digits where the
+/// rotations are nearly equal.
 #[inline(always)]
 fn squared_angle<T: Real, const WIDE: bool>(a: [T; 4], b: [T; 4]) -> T {
     let near = chord(a, b);
@@ -27,14 +27,14 @@ fn squared_angle<T: Real, const WIDE: bool>(a: [T; 4], b: [T; 4]) -> T {
     }
 }
 
-/// Columns that loops take at once: planes must hold so many more than are asked for.
+/// Columns per loop iteration: planes must hold this many columns more than are read.
 ///
-/// One vector of float32 at the widest level: what is left over would take longer, number by number, than all the rest.
+/// One vector of float32 at the widest level. A scalar remainder loop would take longer than all the rest.
 pub(crate) const LANES: usize = 16;
 
-/// Runs a body for the pairs of columns `at[0] + i` and `at[1] + i` of a joint, with their squared distance.
+/// Runs a body with the squared distance of each pair of columns `at[0] + i` and `at[1] + i` of a joint.
 ///
-/// A macro, for a loop is compiled without a rest only where the lengths of all slices are plain to see.
+/// A macro: the compiler omits the scalar remainder loop only where it sees the lengths of all slices.
 macro_rules! each_square {
     ($a:expr, $b:expr, $at:expr, $joint:expr, $n:expr, |$i:ident, $square:ident| $body:expr) => {
         let (here, there, n) = ($a.joints[$joint].row, $b.joints[$joint].row, $n);
@@ -86,8 +86,8 @@ multiversion! {
 }
 
 multiversion! {
-    /// `d = Σ c·factor·square`, `total = Σ c·unit` over joints, where `c` is the product of the shares of both samples, for a
-    /// multiple of [`LANES`] pairs.
+    /// `d = Σ c·factor·square`, `total = Σ c·unit` over joints, where `c` is the product of both samples' weights.
+    /// The number of pairs is a multiple of [`LANES`].
     pub(crate) fn shared_frame_distances<T: Real>(
         sums: [&mut [T]; 2], a: &Features<'_, T>, b: &Features<'_, T>, at: [usize; 2], joints: Range<usize>,
         factors: &[T], units: &[T],
@@ -134,19 +134,19 @@ multiversion! {
 
 /// Sums over a sliding window: `out[i] = values[i] + … + values[i + window − 1]`.
 ///
-/// Windows are put together from sums over powers of two, so the cost hardly grows with the window, every sum is of
-/// positive terms only, and none runs on: a burst in one place leaves no error elsewhere, and a sum depends on its own
-/// terms alone, wherever the values begin. `values` is used up.
-pub(crate) fn sliding_sums<T: Real>(values: &mut Vec<T>, spare: &mut Vec<T>, window: usize, out: &mut [T]) {
-    sums_along(values, spare, window, 1, out);
+/// Windows are composed of sums over powers of two, so the cost hardly grows with the window. Every sum has positive
+/// terms only and no sum is carried along: a large value leaves no error in other windows, and a sum depends on its
+/// own terms only. `values` is used as scratch.
+pub(crate) fn sliding_sums<T: Real>(values: &mut Vec<T>, scratch: &mut Vec<T>, window: usize, out: &mut [T]) {
+    sums_along(values, scratch, window, 1, out);
 }
 
-/// Sums of values that are `step` apart: `out[i] = values[i] + … + values[i + (window − 1)·step]`, as [`sliding_sums`].
+/// Sums of values with stride `step`: `out[i] = values[i] + … + values[i + (window − 1)·step]`, as [`sliding_sums`].
 ///
-/// With rows one number shorter than the step, these are sums along the diagonals of a matrix.
+/// In a matrix whose rows are one element shorter than `step`, these are sums along diagonals.
 pub(crate) fn sums_along<T: Real>(
     values: &mut Vec<T>,
-    spare: &mut Vec<T>,
+    scratch: &mut Vec<T>,
     window: usize,
     step: usize,
     out: &mut [T],
@@ -163,9 +163,9 @@ pub(crate) fn sums_along<T: Real>(
             return;
         }
         let length = values.len() - power * step;
-        spare.resize(length, T::ZERO);
-        add_shifted(&mut spare[..length], values, power * step);
-        std::mem::swap(values, spare);
+        scratch.resize(length, T::ZERO);
+        add_shifted(&mut scratch[..length], values, power * step);
+        std::mem::swap(values, scratch);
         values.truncate(length);
         power *= 2;
     }
@@ -181,7 +181,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// `d ← √(d / total)`, or `√d` if they are not `averaged`; infinite where the total is 0.
+    /// `d ← √(d / total)`, or `√d` unless `averaged`; infinite where the total is 0.
     pub(crate) fn shared_roots<T: Real>(d: &mut [T], total: &[T], averaged: bool) {
         let n = d.len();
         let total = &total[..n];
@@ -195,7 +195,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Marks with 1 where `d[i] ≤ limit[i]`, and tells whether there is a mark.
+    /// Marks with 1 where `d[i] ≤ limit[i]`; returns whether there is a mark.
     pub(crate) fn mark_nearest<T: Real>(marks: &mut [u8], d: &[T], limit: &[T]) -> bool {
         let n = marks.len();
         let (d, limit) = (&d[..n], &limit[..n]);

@@ -1,14 +1,14 @@
-//! Search: the patches of motions, and the poses of a database, that are most like others.
+//! Nearest-neighbour search for the patches of motions and for the poses of a database.
 //!
-//! A patch is a frame with its surroundings in time. Along a diagonal, the pairs `(t, t + lag)`, the distance of two
-//! patches is a sliding sum over the distances of single frames, so the cost does not grow with the patch.
+//! A patch is a frame with its neighbourhood in time. Along a diagonal, the pairs `(t, t + lag)`, the squared patch
+//! distance is a sliding sum over squared frame distances, so the cost does not grow with the patch length.
 //!
-//! - [`patch_neighbors`]: the most similar patches of every frame, in the clip or in a library of others;
-//! - `features`: what frames are compared by, as planes;
-//! - `diagonal`: distances of the patches of one diagonal;
-//! - `nearest`: the most similar so far;
-//! - `join`: all pairs between a block of frames and a block of candidates, or those that matter;
-//! - `bounds`: what patches are never nearer than, which tells the pairs that do not matter;
+//! - [`patch_neighbors`]: the nearest patches of every frame, in the clip or in a library of clips;
+//! - `features`: the features that frames are compared by, as planes;
+//! - `diagonal`: distances between the patches along one diagonal;
+//! - `nearest`: the nearest candidates found so far;
+//! - `join`: distances between a block of frames and a block of candidates;
+//! - `bounds`: lower bounds of patch distances, by which most pairs are skipped;
 //! - `kernels`: the vectorised loops;
 //! - [`poses`]: the nearest segments of poses in a database, and the graph of neighbours.
 

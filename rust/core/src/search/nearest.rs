@@ -1,30 +1,30 @@
-//! The most similar patches found so far.
+//! The nearest candidates found so far.
 
 use super::kernels;
 use crate::Real;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Which of two candidates at the same distance comes first.
+/// Order of two candidates at the same distance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Ties {
-    /// The one with the lower number.
+    /// The one with the lower index first.
     Lower,
-    /// The one nearer in time; of two equally near ones the earlier.
+    /// The one nearer in time first; of two equally near ones the earlier.
     Nearer,
 }
 
-/// The `count` nearest candidates of some frames, nearest first. What is kept does not depend on the order of the offers, nor on
-/// whether one is made again.
+/// The `count` nearest candidates of consecutive frames, nearest first. The result does not depend on the order of
+/// the offers or on repeated offers.
 #[derive(Debug)]
 pub(crate) struct Nearest<T> {
     count: usize,
     ties: Ties,
-    /// The number of the first frame.
+    /// Index of the first frame.
     first: usize,
     kept: Vec<usize>,
     distances: Vec<T>,
     numbers: Vec<usize>,
-    /// Candidates farther than this are not kept; infinite until there are `count`.
+    /// Distance of the farthest candidate kept, per frame; infinite until there are `count`.
     limits: Vec<T>,
 }
 
@@ -43,7 +43,7 @@ impl<T: Real> Nearest<T> {
         }
     }
 
-    /// What is kept for a frame: distances and numbers.
+    /// The candidates kept for a frame: distances and indices.
     pub(crate) fn of(&self, frame: usize) -> impl Iterator<Item = (T, usize)> {
         let row = frame * self.count..frame * self.count + self.kept[frame];
         self.distances[row.clone()].iter().copied().zip(self.numbers[row].iter().copied())
@@ -58,7 +58,7 @@ impl<T: Real> Nearest<T> {
         }
     }
 
-    /// Offers a candidate; infinitely far ones are never kept.
+    /// Offers a candidate; it is kept if it is among the `count` nearest and its distance is finite.
     pub(crate) fn offer(&mut self, frame: usize, distance: T, number: usize) {
         let row = frame * self.count;
         let mut kept = self.kept[frame];
@@ -75,17 +75,17 @@ impl<T: Real> Nearest<T> {
             }
             kept -= 1;
         }
-        let mut place = kept;
-        while place > 0 && precedes(place - 1) {
-            place -= 1;
+        let mut index = kept;
+        while index > 0 && precedes(index - 1) {
+            index -= 1;
         }
-        if place > 0 && self.numbers[row + place - 1] == number {
+        if index > 0 && self.numbers[row + index - 1] == number {
             return;
         }
-        self.distances.copy_within(row + place..row + kept, row + place + 1);
-        self.numbers.copy_within(row + place..row + kept, row + place + 1);
-        self.distances[row + place] = distance;
-        self.numbers[row + place] = number;
+        self.distances.copy_within(row + index..row + kept, row + index + 1);
+        self.numbers.copy_within(row + index..row + kept, row + index + 1);
+        self.distances[row + index] = distance;
+        self.numbers[row + index] = number;
         self.kept[frame] = kept + 1;
         if kept + 1 == self.count {
             self.limits[frame] = self.distances[row + kept];
@@ -93,15 +93,16 @@ impl<T: Real> Nearest<T> {
     }
 }
 
-/// The nearest candidates of frames in sequence, so many frames in a list, so that threads may share them.
+/// The nearest candidates of consecutive frames in lists of `length` frames each, one lock per list, shared between
+/// threads.
 #[derive(Debug)]
 pub(crate) struct Lists<T> {
     each: Vec<Mutex<Nearest<T>>>,
-    /// The number of the first frame.
+    /// Index of the first frame.
     first: usize,
-    /// Frames of a list.
+    /// Frames per list.
     length: usize,
-    /// Candidates of a frame.
+    /// Candidates per frame.
     count: usize,
 }
 
@@ -112,39 +113,39 @@ impl<T: Real> Lists<T> {
         Self { each: (0..frames).step_by(length.max(1)).map(list).collect(), first, length, count }
     }
 
-    /// How many are kept at most for each frame.
+    /// Largest number of candidates per frame.
     pub(crate) fn count(&self) -> usize {
         self.count
     }
 
-    /// The list of a frame, and which of its frames that is.
+    /// The list of a frame, and the frame's index within the list.
     fn list(&self, frame: usize) -> (MutexGuard<'_, Nearest<T>>, usize) {
-        let place = frame - self.first;
-        let list = self.each[place / self.length].lock();
-        (list.unwrap_or_else(PoisonError::into_inner), place % self.length)
+        let index = frame - self.first;
+        let list = self.each[index / self.length].lock();
+        (list.unwrap_or_else(PoisonError::into_inner), index % self.length)
     }
 
-    /// Writes the limits of frames of a list.
+    /// Writes the limits of consecutive frames of one list.
     pub(crate) fn read_limits(&self, first: usize, limits: &mut [T]) {
-        let (list, place) = self.list(first);
-        limits.copy_from_slice(&list.limits[place..place + limits.len()]);
+        let (list, index) = self.list(first);
+        limits.copy_from_slice(&list.limits[index..index + limits.len()]);
     }
 
-    /// Offers candidates to frames of a list, to each the one that follows that of the frame before.
+    /// Offers the candidates `number`, `number + 1`, … to consecutive frames of one list, one each.
     pub(crate) fn offer(&self, first: usize, number: usize, distances: &[T], marks: &mut Vec<u8>) {
-        let (mut list, place) = self.list(first);
+        let (mut list, index) = self.list(first);
         marks.resize(distances.len(), 0);
-        if !kernels::mark_nearest(marks, distances, &list.limits[place..place + distances.len()]) {
+        if !kernels::mark_nearest(marks, distances, &list.limits[index..index + distances.len()]) {
             return;
         }
         for (i, distance) in distances.iter().enumerate() {
             if marks[i] != 0 {
-                list.offer(place + i, *distance, number + i);
+                list.offer(index + i, *distance, number + i);
             }
         }
     }
 
-    /// The lists, one after the other.
+    /// The lists in order.
     pub(crate) fn into_nearest(self) -> impl Iterator<Item = Nearest<T>> {
         self.each.into_iter().map(|list| list.into_inner().unwrap_or_else(PoisonError::into_inner))
     }

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from quatfilt._reference._arrays import Indices, Reals
+from quatfilt._reference.filters.displacements import displacement_between
 from quatfilt._reference.filters.kalman import rotations, vectors
 from quatfilt._reference.filters.kalman.covariance import Covariance
-from quatfilt._reference.filters.ways import way_between
 from quatfilt._reference.rotations.quaternion import normalize
 
 STEP = 0.5
@@ -98,7 +98,7 @@ def rotation_scores(samples: Reals, trust: Reals, process_variance: Reals, varia
     """Judge what the filter does to a block of rotations, `(frames, joints, 4)`."""
     states, innovations = zip(*rotations.forward(samples, trust, process_variance, variance), strict=True)
     smooth = rotations.smoothed(list(states), trust, process_variance, len(samples) - 1, 0)[::-1]
-    residuals = np.array([way_between(*pair) for pair in zip(samples, smooth, strict=True)])
+    residuals = np.array([displacement_between(*pair) for pair in zip(samples, smooth, strict=True)])
     own = trust * smoothed_variances([state.covariance for state in states], process_variance) / variance
     # How many samples there were before.
     before: Indices = np.cumsum(trust > 0, axis=0) - (trust > 0)

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from quatfilt._reference._arrays import Mask, Reals
+from quatfilt._reference.filters.displacements import carried, displacement_between, moved
 from quatfilt._reference.filters.kalman.covariance import Covariance
 from quatfilt._reference.filters.nonlocal_pose_means.nonlocal_pose_means import in_hemisphere_of
-from quatfilt._reference.filters.ways import carried, moved, way_between
 from quatfilt._reference.rotations.quaternion import normalize
 
 FARTHEST_FORECAST = 0.2
@@ -132,18 +132,18 @@ def predict(state: State, process_variance: Reals) -> tuple[Prediction, Covarian
     covariance = state.covariance.predicted(process_variance)
     left = covariance.pose > FARTHEST_FORECAST**2
     origin = np.where(left[:, None], state.rotation, moved(state.rotation, state.velocity))
-    way = np.where(left[:, None], state.forecast() + state.velocity, 0)
-    return Prediction(origin, way, left), covariance
+    displacement = np.where(left[:, None], state.forecast() + state.velocity, 0)
+    return Prediction(origin, displacement, left), covariance
 
 
 def step(
     state: State, sample: Reals, trust: Reals, process_variance: Reals, variance: Reals
 ) -> tuple[State, Reals]:
     """Return the state one frame later, and the innovation: from the expected pose to the sample."""
-    (origin, way, left), covariance = predict(state, process_variance)
-    innovation = way_between(origin, sample) - way
+    (origin, displacement, left), covariance = predict(state, process_variance)
+    innovation = displacement_between(origin, sample) - displacement
     gain, velocity_gain = (x[:, None] for x in covariance.gains(variance, trust))
-    corrected = way + gain * innovation
+    corrected = displacement + gain * innovation
     velocity = carried(state.velocity + velocity_gain * innovation, corrected)
     measured = trust > 0
     return (
@@ -163,28 +163,28 @@ def smoothed(
     """Smoothed rotations of the frames `last, last − 1 … first`, from what is known at frame `last`."""
     after = states[last]
     # What is known better now: the way from the rotation of the state, and the velocity there.
-    way, velocity = after.forecast(), after.velocity
-    heard = np.zeros(len(way), np.bool_)
+    displacement, velocity = after.forecast(), after.velocity
+    heard = np.zeros(len(displacement), np.bool_)
     result = [after.rotation]
     for frame in range(last - 1, first - 1, -1):
         state = states[frame]
         (origin, expected, left), _ = predict(state, process_variance)
         # The same as seen from the origin of the prediction, which a measurement has left behind.
-        seen = way_between(origin, moved(after.rotation, way))
+        seen = displacement_between(origin, moved(after.rotation, displacement))
         measured = (trust[frame + 1] > 0)[:, None]
-        velocity = np.where(measured, carried(carried(velocity, way), -seen), velocity)
-        way = np.where(measured, seen, way)
+        velocity = np.where(measured, carried(carried(velocity, displacement), -seen), velocity)
+        displacement = np.where(measured, seen, displacement)
         heard |= trust[frame + 1] > 0
         # What it differs by from what was expected; nothing where no sample came since. And as seen from here.
-        surprise = np.where(heard[:, None], way - expected, 0)
+        surprise = np.where(heard[:, None], displacement - expected, 0)
         change = np.where(heard[:, None], velocity - state.velocity, 0)
         surprise = np.where(left[:, None], surprise, carried(surprise, -state.velocity))
         change = np.where(left[:, None], change, carried(change, -state.velocity))
         c11, c12, c21, c22 = (c[:, None] for c in state.covariance.smoother_gains(process_variance))
-        way = state.forecast() + c11 * surprise + c12 * change
+        displacement = state.forecast() + c11 * surprise + c12 * change
         velocity = state.velocity + c21 * surprise + c22 * change
         # Where no later sample says where a forecast leads, it is not followed.
-        result.append(np.where(heard[:, None], moved(state.rotation, way), state.rotation))
+        result.append(np.where(heard[:, None], moved(state.rotation, displacement), state.rotation))
         after = state
     return result
 

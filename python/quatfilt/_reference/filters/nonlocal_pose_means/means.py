@@ -34,7 +34,7 @@ def average(clip: Clip, how: Comparison, kept: Kept | None, library: Poses | Non
     for lag in how.lags:
         t = frames_with_candidate(clip, how, lag)
         here, there = own[t], own[t] + lag
-        weights = likeness(patch_distances(clip, how, lag))
+        weights = weights_of(patch_distances(clip, how, lag))
         if kept is not None:
             weights[~(kept.lags[t] == lag).any(axis=-1)] = 0
         largest[t] = np.maximum(largest[t], weights)
@@ -46,7 +46,7 @@ def average(clip: Clip, how: Comparison, kept: Kept | None, library: Poses | Non
     if kept is not None and library is not None and len(library.middles):
         for place in range(kept.others.shape[-1]):
             number = np.broadcast_to(kept.others[..., place], (clip.frames, joints))
-            borrowed = np.where(kept.others[..., place] < 0, 0, likeness(kept.distances[..., place]))
+            borrowed = np.where(kept.others[..., place] < 0, 0, weights_of(kept.distances[..., place]))
             largest = np.maximum(largest, borrowed)
             frame = library.middles[number]
             weight = borrowed * library.present[frame, np.arange(joints)]
@@ -62,6 +62,6 @@ def average(clip: Clip, how: Comparison, kept: Kept | None, library: Poses | Non
     return rotations, clip.translation[own] + shift / moved_total
 
 
-def likeness(distances: Reals) -> Reals:
+def weights_of(distances: Reals) -> Reals:
     """Weights of patch distances."""
     return np.where(distances <= FARTHEST, np.exp(-distances), 0)

@@ -53,7 +53,7 @@ class Examples:
         return np.linalg.inv(self.gram + self.ridge * np.eye(len(self.gram)))
 
     @cached_property
-    def shadow(self) -> Reals:
+    def query_products(self) -> Reals:
         """`X` times the query: what the examples see of it, `(K,)`."""
         return self.inputs @ self.query
 
@@ -65,7 +65,7 @@ class Examples:
     @cached_property
     def unseen(self) -> float:
         """`λ + x²`, where `x` is the part of the query that the examples do not show: `|x_q|² − (X x_q)ᵀ A (X x_q)`."""
-        seen = float(self.shadow @ self.inverse @ self.shadow)
+        seen = float(self.query_products @ self.inverse @ self.query_products)
         return self.ridge + max(float(self.query @ self.query) - seen, 0.0)
 
 

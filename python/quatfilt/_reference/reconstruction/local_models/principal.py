@@ -28,7 +28,7 @@ def principal_component_regression(examples: Examples, share: float) -> tuple[Re
     """
     values, vectors = components(examples.gram, share)
     scores = vectors.T @ examples.outputs
-    mean = examples.output_mean + ((vectors.T @ examples.shadow) / values) @ scores
+    mean = examples.output_mean + ((vectors.T @ examples.query_products) / values) @ scores
     share_of_own = examples.weights / examples.total
     left = (1 - np.sum(vectors**2, axis=1) - share_of_own)[:, None]
     without = examples.outputs / np.maximum(1 - share_of_own, LEAST_LEFT)[:, None]

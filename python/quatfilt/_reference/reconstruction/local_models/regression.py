@@ -40,7 +40,7 @@ def regression(examples: Examples, direction: str) -> tuple[Reals, Reals]:
         operator, dual = examples.gram, y
         along = operator @ y
     factor = quotient(np.sum(along * y, axis=0), np.sum(along * along, axis=0))
-    mean = examples.output_mean + factor * (examples.shadow @ dual)
+    mean = examples.output_mean + factor * (examples.query_products @ dual)
 
     # Without example k the means move, by which all that is left of the example itself grows by b = Σω / (Σω − ω_k). Its
     # product with x_k then leaves XᵀX and Xᵀy, and u moves by −κ times column k of what leads from y to u.

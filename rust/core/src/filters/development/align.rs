@@ -1,4 +1,4 @@
-//! From a clip to the planes of a group of joints, with signs such that quaternions can be averaged.
+//! Loads a group of joints as planes, with signs such that quaternions can be averaged.
 
 use super::super::columns::BLOCK;
 use crate::clip::Planes;
@@ -7,13 +7,13 @@ use crate::simd::multiversion;
 use crate::{ClipView, Real};
 use std::ops::Range;
 
-/// Joints per task: few, for each has planes over the whole clip.
+/// Joints per task: few, because each has planes over the whole clip.
 pub(super) const GROUP: usize = 2;
 
 /// Planes of a joint: its quaternions and its confidence.
 pub(super) const ROWS: usize = 5;
 
-/// Clarity from which the sign of the first sample is to be relied on.
+/// Clarity above which the sign of the first sample is reliable.
 const CLEAR: f64 = 0.8;
 
 /// Frames per chunk.
@@ -22,11 +22,12 @@ const CHUNK: usize = 64;
 /// A chunk of quaternions of one joint, as planes.
 type Chunk = [[f64; CHUNK]; 4];
 
-/// Reads unit quaternions of the joints of `range`, and their confidence: [`ROWS`] planes for each.
+/// Reads unit quaternions of the joints in `range`, and their confidence: [`ROWS`] planes for each.
 ///
-/// Each quaternion takes the hemisphere of a running mean of those before it, to which it then adds half of itself, the less
-/// the less it is trusted and the less noise leaves `clear`. Beside the sample before alone, noise would turn the sign of the rest
-/// of the path too often. Joints in heavy noise go back to the first frame in the same way: it is not the one to begin with.
+/// Each quaternion is put in the hemisphere of a running mean of the previous ones. Half of the quaternion is then
+/// added to the mean, less for a low confidence or a low `clear`. A comparison with the previous sample alone would
+/// change the sign of the remaining path too often in noise. In heavy noise a second pass runs back to the first
+/// frame in the same way, because the first frame is unreliable.
 pub(super) fn load<T: Real>(
     clip: ClipView<'_, T>,
     confidence: Option<&[T]>,
@@ -43,7 +44,7 @@ pub(super) fn load<T: Real>(
     let mut means = [None; GROUP];
     for start in (0..frames).step_by(CHUNK) {
         let length = CHUNK.min(frames - start);
-        // A plain copy first: its loads do not wait for each other, and memory is slow.
+        // A plain copy first: its loads are independent of each other, and memory is slow.
         for (copy, frame) in rows.iter_mut().zip(clip.slice(start, start + length).data().chunks_exact(row)) {
             let frame = &frame[range.start * 4..range.end * 4];
             match frame.first_chunk() {
@@ -83,7 +84,7 @@ pub(super) fn load<T: Real>(
     }
 }
 
-/// Turns the signs of a joint, frame by frame, to the hemisphere of a running mean, and moves the mean along.
+/// Puts the samples of a joint, frame by frame, in the hemisphere of a running mean, and updates the mean.
 pub(super) fn follow_mean(
     samples: [&mut [f64]; 4],
     trust: Option<&[f64]>,
@@ -122,7 +123,7 @@ multiversion! {
     }
 }
 
-/// Turns the signs of the first `length` quaternions of each joint, and moves the running means along.
+/// Aligns the signs of the first `length` quaternions of each joint, and updates the running means.
 fn align(
     samples: &mut [Chunk],
     halves: &[[f64; CHUNK]; GROUP],
@@ -130,7 +131,7 @@ fn align(
     means: &mut [Option<[f64; 4]>],
     length: usize,
 ) {
-    // The joints' chains of sums do not wait for each other.
+    // The joints' chains of sums are independent of each other.
     for i in 0..length {
         let joints = samples.iter_mut().zip(halves).zip(clarity).zip(means.iter_mut());
         for (((samples, halves), clear), kept) in joints {

@@ -9,22 +9,22 @@ use crate::simd::multiversion;
 use crate::window::Boundary;
 use crate::{Error, Real};
 
-/// Length of an average of unit quaternions below which its direction is chance: the frames turn right round within the
-/// mask.
+/// Length of an average of unit quaternions below which its direction is random: the samples rotate through all
+/// directions within the mask.
 pub(super) const SHORTEST_MEAN: f64 = 0.1;
 
 /// A joint and its reference path. All planes are padded to a multiple of [`BLOCK`] frames.
 #[derive(Debug)]
 pub(in crate::filters) struct Joint<'a> {
-    /// How many frames.
+    /// Number of frames.
     pub(in crate::filters) frames: usize,
     /// The aligned unit quaternions `q`.
     pub(in crate::filters) samples: [&'a [f64]; 4],
     /// The unit quaternions `r`.
     pub(in crate::filters) reference: [&'a mut [f64]; 4],
-    /// `h`, unit quaternions: from the frame of the body to the one that `R` and `y` are seen in.
+    /// `h`, unit quaternions: from the body frame to the frame of `R` and `y`.
     pub(in crate::filters) frame: [&'a mut [f64]; 4],
-    /// Whether the frame is carried along the reference path; else it is that of the body.
+    /// Whether the frame is moved along the reference path by parallel transport; otherwise it is the body frame.
     pub(in crate::filters) carried: bool,
     /// `R`, radians.
     pub(in crate::filters) development: [&'a mut [f64]; 3],
@@ -34,34 +34,34 @@ pub(in crate::filters) struct Joint<'a> {
     pub(in crate::filters) trust: Option<&'a [f64]>,
 }
 
-/// How a joint is developed.
+/// Parameters of the development.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Chart<'a> {
-    /// The mask that makes the reference path.
+    /// The mask of the reference path.
     pub(super) mask: &'a Mask,
-    /// Its deviation in frames, where joints that spin are brought to rest first.
+    /// Its standard deviation in frames, if spinning joints are slowed down first.
     pub(super) spins: Option<f64>,
-    /// Whether the vectors are seen from the frame that is carried along the reference path.
+    /// Whether the vectors are relative to the frame that is moved along the reference path.
     pub(super) carried: bool,
 }
 
-/// What a filter for numbers is applied to: the vectors of a joint, or a translation.
+/// Input of a linear filter: the vectors of a joint, or a translation.
 ///
-/// All planes are longer than there are frames: padded to a multiple of 32, so that masks need no remainders.
+/// All planes are padded to a multiple of 32 frames, so that masks need no remainder loops.
 #[derive(Debug)]
 pub struct Columns<'a> {
-    /// How many frames.
+    /// Number of frames.
     pub frames: usize,
-    /// What is filtered.
+    /// The values to be filtered.
     pub vectors: [&'a mut [f64]; 3],
-    /// Its local mean: the development of the reference path.
+    /// Their local mean: the development of the reference path.
     pub mean: [&'a [f64]; 3],
     /// The samples' confidence.
     pub trust: Option<&'a [f64]>,
 }
 
 impl Columns<'_> {
-    /// Pulls the vectors towards their local mean by as much as they are not trusted.
+    /// Moves the vectors towards their local mean, by one minus their confidence.
     pub fn pull(&mut self) {
         if let Some(trust) = self.trust {
             for (vector, mean) in self.vectors.iter_mut().zip(self.mean) {
@@ -72,7 +72,7 @@ impl Columns<'_> {
 }
 
 impl<'a> Joint<'a> {
-    /// Makes the reference path with a mask, and rolls out.
+    /// Computes the reference path with a mask, and develops it.
     pub(super) fn develop(
         samples: [&'a [f64]; 4],
         trust: Option<&'a [f64]>,
@@ -104,7 +104,7 @@ impl<'a> Joint<'a> {
         Ok(joint)
     }
 
-    /// Rolls the reference path out, and the samples beside it.
+    /// Develops the reference path, and the samples relative to it.
     pub(in crate::filters) fn roll_out(&mut self) {
         let reference = self.reference.each_ref().map(|plane| &**plane);
         let mut development = self.development.each_mut().map(|plane| &mut **plane);
@@ -121,12 +121,12 @@ impl<'a> Joint<'a> {
         beside(reference, self.samples, frame, development.each_ref().map(|plane| &**plane), vectors);
     }
 
-    /// A vector of a frame as the body sees it.
+    /// A vector of a frame, in body coordinates.
     pub(in crate::filters) fn of_body(&self, frame: usize, vector: [f64; 3]) -> [f64; 3] {
         rotate(conjugate_one(self.frame.each_ref().map(|plane| plane[frame])), vector)
     }
 
-    /// What a filter for numbers is applied to.
+    /// The input of a linear filter.
     pub(in crate::filters) fn columns(&mut self) -> Columns<'_> {
         Columns {
             frames: self.frames,
@@ -136,7 +136,7 @@ impl<'a> Joint<'a> {
         }
     }
 
-    /// Moves the reference path to where the vectors are.
+    /// Moves the reference path to the filtered vectors.
     pub(in crate::filters) fn follow_vectors(&mut self) {
         follow(
             self.frame.each_ref().map(|plane| &**plane),
@@ -148,7 +148,7 @@ impl<'a> Joint<'a> {
 }
 
 multiversion! {
-    /// Scales quaternions to length 1; those shorter than `shortest` become the samples.
+    /// Normalises quaternions; those shorter than `shortest` are replaced by the samples.
     pub(super) fn make_unit<T: Real>(q: [&mut [T]; 4], samples: [&[T]; 4], shortest: T) {
         let n = q[0].len();
         let samples = samples.map(|plane| &plane[..n]);
@@ -167,7 +167,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Rotation vectors from each frame to the next, the shorter way.
+    /// Rotation vectors from each frame to the next, of the shorter rotation.
     pub(super) fn turns<T: Real>(q: [&[T]; 4], out: [&mut [T]; 3]) {
         let n = out[0].len();
         let here = q.map(|plane| &plane[..n]);
@@ -185,7 +185,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Halves of the turns from each frame to the next, the shorter way, as unit quaternions.
+    /// Half of the shorter rotation from each frame to the next, as unit quaternions.
     fn halves<T: Real>(q: [&[T]; 4], out: [&mut [T]; 4]) {
         let n = out[0].len();
         let here = q.map(|plane| &plane[..n]);
@@ -205,8 +205,8 @@ multiversion! {
     }
 }
 
-/// Products of the halves of the turns up to each frame, in place: the frame of the body, carried along by parallel transport,
-/// turns half as far.
+/// Products of the half rotations up to each frame, in place: parallel transport rotates the body frame by half of
+/// each rotation.
 pub(super) fn carry(halves: &mut [&mut [f64]; 4], frames: usize) {
     let [w, x, y, z] = halves.each_mut().map(|plane| &mut plane[..frames]);
     let mut here = [1.0, 0.0, 0.0, 0.0];
@@ -216,7 +216,7 @@ pub(super) fn carry(halves: &mut [&mut [f64]; 4], frames: usize) {
     z[0] = 0.0;
     for i in 1..frames {
         let next = product(here, [w[i], x[i], y[i], z[i]]);
-        // Newton's step to the length 1: what rounding took from it does not add up, and no root is waited for.
+        // Newton's step towards length 1: rounding errors do not accumulate, and no square root is needed.
         let scale = 1.5 - 0.5 * dot(next, next);
         here = next.map(|x| scale * x);
         w[i] = here[0];
@@ -227,7 +227,7 @@ pub(super) fn carry(halves: &mut [&mut [f64]; 4], frames: usize) {
 }
 
 multiversion! {
-    /// Vectors as they are seen from other frames, in place.
+    /// Vectors in the coordinates of other frames, in place.
     pub(super) fn seen<T: Real>(frame: [&[T]; 4], vectors: [&mut [T]; 3]) {
         let n = vectors[0].len();
         let frame = frame.map(|plane| &plane[..n]);
@@ -241,7 +241,7 @@ multiversion! {
     }
 }
 
-/// Sums of the turns from frame to frame, in place; the first frame has none.
+/// Cumulative sums of the rotation vectors, in place; the first is 0.
 fn add_up(turns: &mut [&mut [f64]; 3], frames: usize) {
     let [x, y, z] = turns.each_mut().map(|plane| &mut plane[..frames]);
     let mut sum = [0.0; 3];
@@ -257,7 +257,7 @@ fn add_up(turns: &mut [&mut [f64]; 3], frames: usize) {
 }
 
 multiversion! {
-    /// The samples as vectors beside the development of the reference path.
+    /// The samples as vectors relative to the development of the reference path.
     fn beside<T: Real>(
         reference: [&[T]; 4],
         samples: [&[T]; 4],
@@ -283,7 +283,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Moves a path by half of what its vectors differ from its development.
+    /// Moves a path by half of the difference between its vectors and its development.
     fn follow<T: Real>(frame: [&[T]; 4], development: [&[T]; 3], vectors: [&[T]; 3], path: [&mut [T]; 4]) {
         let n = path[0].len();
         let frame = frame.map(|plane| &plane[..n]);
@@ -303,7 +303,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Pulls numbers towards their means by as much as they are not trusted.
+    /// Moves values towards their means, by one minus their confidence.
     fn pull<T: Real>(numbers: &mut [T], means: &[T], trust: &[T]) {
         let n = numbers.len();
         let (means, trust) = (&means[..n], &trust[..n]);

@@ -1,23 +1,24 @@
-//! Rotations as vectors about a reference path: what filters for numbers can be applied to.
+//! Rotations as vectors about a reference path, to which linear filters can be applied.
 //!
-//! Of a noisy path `q_t` a smooth one `r_t` is made, an average in R⁴, and rolled out:
+//! The noisy path `q_t` is averaged in R⁴ to a smooth reference path `r_t`, which is developed:
 //!
 //! ```text
 //! R_0 = 0,     R_{t+1} = R_t + 2 log(r_t⁻¹ r_{t+1})       the development of the reference path
 //! y_t = R_t + 2 log(r_t⁻¹ q_t)                            the vectors, radians of rotation
-//! r_t exp((F(y)_t − R_t) / 2)                             what a filter F for numbers makes of them
+//! r_t exp((F(y)_t − R_t) / 2)                             the result of a linear filter F
 //! ```
 //!
-//! All these vectors are seen from the frame of the body, or from one that is carried along the path by parallel transport, which
-//! turns it half as far:
+//! All these vectors are in body coordinates, or in a frame that is moved along the path by parallel transport, which
+//! rotates it by half of each rotation:
 //!
 //! ```text
 //! h_0 = 1,     h_{t+1} = h_t (r_t⁻¹ r_{t+1})^½            and h ω h⁻¹ for each vector ω above
 //! ```
 //!
-//! With `r = q` and `h = 1` this is Lee and Shin's construction; about a smooth path the commutators of the noise do not add up.
+//! With `r = q` and `h = 1` this is Lee and Shin's construction; about a smooth path the commutators of the noise do
+//! not accumulate.
 //!
-//! Each joint is worked through over the whole clip, in float64; a task is a group of joints side by side in memory.
+//! Each joint is processed over the whole clip, in float64; a task is a group of joints side by side in memory.
 
 mod align;
 mod joint;
@@ -42,18 +43,18 @@ pub(super) use rows::{interleave, store};
 use std::ops::Range;
 use std::sync::Mutex;
 
-/// Estimated nanoseconds per frame and joint of the way to the vectors and back.
+/// Estimated nanoseconds per frame and joint for the development and its inverse.
 const NANOSECONDS: usize = 60;
 
-/// Where noise leaves less of a mean, the reference path takes no more frames for it.
+/// Smallest clarity for which the reference path uses more frames.
 const LEAST_CLARITY: f64 = 1.0 / 16.0;
 
-/// A filter for numbers, to be applied to rotations by [`Input::filter`].
+/// A linear filter, applied to rotations by [`Input::filter`].
 pub trait Smooth: Sync {
     /// Estimated nanoseconds per frame and joint.
     fn nanoseconds(&self) -> usize;
 
-    /// Refuses parameters that do not fit a clip of at least two frames.
+    /// Checks that the parameters agree with a clip of at least two frames.
     ///
     /// # Errors
     /// [`Error::Length`], [`Error::Parameter`].
@@ -61,24 +62,25 @@ pub trait Smooth: Sync {
         Ok(())
     }
 
-    /// Deviation of the noise of a joint per component of the rotation vector in radians, where it is known: in heavy noise the
-    /// reference path takes the mean of more frames.
+    /// Standard deviation of a joint's noise per component of the rotation vector in radians, if known: in heavy
+    /// noise the reference path averages more frames.
     fn noise(&self, _joint: usize) -> f64 {
         0.0
     }
 
-    /// Whether the vectors are seen from the frame that is carried along: then small rotations are filtered as their vectors, up
-    /// to products of three angles. The axes of a body that turns are at rest in its own frame alone.
+    /// Whether the vectors are relative to the frame moved by parallel transport. Then small rotations are filtered
+    /// as their vectors, up to products of three angles. Only in body coordinates are the axes of a rotating body
+    /// constant.
     fn carried(&self) -> bool {
         true
     }
 
-    /// Whether joints that spin are brought to rest before their reference path is made.
+    /// Whether spinning joints are slowed down before their reference path is computed.
     fn follows_spins(&self) -> bool {
         true
     }
 
-    /// How often the rotations are filtered, each time about the result of the time before.
+    /// Number of times that the rotations are filtered, each time about the previous result.
     fn rounds(&self) -> usize {
         1
     }
@@ -95,7 +97,7 @@ pub trait Smooth: Sync {
         interrupt: &Interrupt,
     ) -> Result<(), Error>;
 
-    /// Filters a translation in place; as the first joint, unless it has parameters of its own.
+    /// Filters a translation in place; like the first joint, unless the filter has parameters for it.
     ///
     /// # Errors
     /// [`Error::Interrupted`].
@@ -109,25 +111,25 @@ pub trait Smooth: Sync {
     }
 }
 
-/// What is filtered, and how its reference path is made.
+/// Input of a linear filter, and parameters of its reference path.
 #[derive(Debug, Clone, Copy)]
 pub struct Input<'a, T> {
     /// Rotations without missing samples; they need not have length 1 exactly.
     pub clip: ClipView<'a, T>,
     /// Weights of the samples in the reference path, `(frames, joints)`, from 0 to 1.
     pub confidence: Option<&'a [T]>,
-    /// Deviation in frames of the Gaussian mask that makes the reference path, for each joint.
+    /// Standard deviation in frames of the Gaussian mask of the reference path, for each joint.
     pub reference_sigma: &'a [f64],
 }
 
-/// What noise leaves of the squared length of a mean of rotations, at least [`LEAST_CLARITY`]: so many times as many frames make a
-/// reference path that is as clear as without noise.
+/// Factor by which noise reduces the squared length of a mean of rotations, at least [`LEAST_CLARITY`]. Its inverse
+/// is the factor by which the number of averaged frames must grow to compensate.
 fn clarity(noise: f64) -> f64 {
     let length = coherence(noise);
     (length * length).max(LEAST_CLARITY)
 }
 
-/// Memory that goes from task to task: fresh pages cost as much as the arithmetic.
+/// Scratch memory, reused from task to task: fresh pages cost as much as the arithmetic.
 #[derive(Debug, Default)]
 struct Buffers {
     samples: Planes<f64>,
@@ -136,15 +138,16 @@ struct Buffers {
 }
 
 impl<T: Real> Input<'_, T> {
-    /// Refuses slices that do not fit together.
+    /// Checks that the lengths of slices agree.
     pub(super) fn check(&self) -> Result<(), Error> {
         check_length("reference_sigma", self.clip.joints(), self.reference_sigma.len())?;
         let samples = self.clip.frames() * self.clip.joints();
         self.confidence.map_or(Ok(()), |trust| check_length("confidence", samples, trust.len()))
     }
 
-    /// Develops each joint of a range, which has so much noise, in a frame that is `carried` along or in that of the body, with an eye to `spins` or
-    /// not, and lets `work` write what it makes of it: `width` numbers for each frame. The results stand one joint after the other.
+    /// Develops each joint of a range, with the given noise; `carried` selects the transported frame or the body
+    /// frame, and `spins` whether spinning joints are slowed down. `work` writes `width` values per frame. The
+    /// results are stored joint by joint.
     pub(super) fn each_joint<W: Real>(
         &self,
         range: Range<usize>,
@@ -189,11 +192,11 @@ impl<T: Real> Input<'_, T> {
         Ok(results)
     }
 
-    /// Filters rotations into `out`, `(frames, joints, 4)`, sign-continuous from the hemisphere of the first frame, and the
-    /// translation as it filters the first joint.
+    /// Filters rotations into `out`, `(frames, joints, 4)`, sign-continuous from the hemisphere of the first frame,
+    /// and the translation like the first joint.
     ///
     /// # Errors
-    /// [`Error::Length`] if slices do not fit together; [`Error::Interrupted`].
+    /// [`Error::Length`] if the lengths of slices do not agree; [`Error::Interrupted`].
     pub fn filter(
         &self,
         filter: &impl Smooth,
@@ -221,7 +224,7 @@ impl<T: Real> Input<'_, T> {
         if short {
             return quaternion::normalize(self.clip.data(), out);
         }
-        // A few joints at a time: their results need not all be there before they are in their places.
+        // A few joints at a time, to limit the memory of the intermediate results.
         let batch = parallel::num_threads() * GROUP;
         for first in (0..joints).step_by(batch) {
             let range = first..joints.min(first + batch);
@@ -295,7 +298,7 @@ impl<T: Real> Input<'_, T> {
     }
 }
 
-/// Reads rows of three numbers into columns.
+/// Reads rows of three values into columns.
 fn load_columns<T: Real>(values: &[T], columns: &mut [&mut [f64]; 3]) {
     for (column, numbers) in columns.iter_mut().enumerate() {
         for (number, from) in numbers.iter_mut().zip(values[column..].iter().step_by(3)) {
@@ -304,7 +307,7 @@ fn load_columns<T: Real>(values: &[T], columns: &mut [&mut [f64]; 3]) {
     }
 }
 
-/// A rolled-out clip, to be written.
+/// Output of a development.
 #[derive(Debug)]
 pub struct Developed<'a> {
     /// The path `r` of unit quaternions, `(frames, joints, 4)`.
@@ -315,16 +318,16 @@ pub struct Developed<'a> {
     pub vectors: &'a mut [f64],
 }
 
-/// Rolls rotations out about their reference path.
+/// Develops rotations about their reference path.
 ///
 /// # Errors
-/// [`Error::Length`] if slices do not fit together; [`Error::Interrupted`].
+/// [`Error::Length`] if the lengths of slices do not agree; [`Error::Interrupted`].
 pub fn develop<T: Real>(
     input: Input<'_, T>,
     Developed { reference, development, vectors }: Developed<'_>,
     interrupt: &Interrupt,
 ) -> Result<(), Error> {
-    /// Numbers of a frame of a joint: `r`, `R` and `y`.
+    /// Values of a frame of a joint: `r`, `R` and `y`.
     const WIDTH: usize = 4 + 3 + 3;
     input.check()?;
     let samples = input.clip.frames() * input.clip.joints();

@@ -1,4 +1,4 @@
-//! From planes and joints one after the other to rows, frame by frame.
+//! Transposes planes and joint-by-joint results to rows, frame by frame.
 
 use super::joint::Joint;
 use crate::error::check_length;
@@ -11,7 +11,7 @@ use std::ops::Range;
 /// Frames per task.
 const TASK: usize = 2048;
 
-/// Frames that are put in order together: of float32 and a whole body they stay in the first-level cache.
+/// Frames that are transposed together: in float32 and for a whole body they fit in the first-level cache.
 const CHUNK: usize = 32;
 
 /// Writes the reference path of a joint as rows, sign-continuous from the hemisphere of `first`.
@@ -27,8 +27,8 @@ pub(in crate::filters) fn store<T: Real>(joint: &Joint<'_>, first: [T; 4], rows:
     }
 }
 
-/// Takes the numbers of `columns` out of rows of `width`, which stand one joint of `range` after the other in `from`, and writes them
-/// to the places of these joints, frame by frame, `(frames, joints, columns)`.
+/// Copies `columns` from rows of `width` values, stored joint by joint for the joints in `range`, to the elements of
+/// these joints, frame by frame, `(frames, joints, columns)`.
 pub(in crate::filters) fn interleave<T: Real>(
     from: &[T],
     (width, columns): (usize, Range<usize>),
@@ -57,11 +57,11 @@ pub(in crate::filters) fn interleave<T: Real>(
     })
 }
 
-/// Turns vectors `(frames, joints, 3)` back into rotations: `r_t exp((y_t − R_t) / 2)`, sign-continuous from the hemispheres
-/// of the first frame of `clip`.
+/// Converts vectors `(frames, joints, 3)` back to rotations: `r_t exp((y_t − R_t) / 2)`, sign-continuous from the
+/// hemispheres of the first frame of `clip`.
 ///
 /// # Errors
-/// [`Error::Length`] if slices do not fit together.
+/// [`Error::Length`] if the lengths of slices do not agree.
 pub fn undevelop<T: Real>(
     clip: ClipView<'_, T>,
     reference: &[f64],

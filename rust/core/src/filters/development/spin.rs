@@ -1,14 +1,15 @@
-//! Frames that turn along with a spinning joint.
+//! Frames that rotate along with a spinning joint.
 //!
-//! The signs of quaternions, and their averages in R⁴, need neighbours that lie close together. A joint that turns steadily is brought
-//! to rest from both sides, half from each:
+//! The signs of quaternions and their averages in R⁴ require neighbours that are close together. A steadily rotating
+//! joint is slowed down from both sides, half from each:
 //!
 //! ```text
 //! p_t = L_t⁻¹ q_t S_t⁻¹,     L_0 = S_0 = 1,     L_{t+1} = exp(Ω_t / 4) L_t,     S_{t+1} = S_t exp(ω_t / 4)
 //! ```
 //!
-//! with the means `ω_t` and `Ω_t` of the turns from frame to frame as the body sees them, and as the world does. The inverse of a path
-//! has the inverse `p`; constant rotations on either side, or time that runs backwards, change `p` by constant rotations alone.
+//! with the means `ω_t` and `Ω_t` of the rotations from frame to frame in body and in world coordinates. The inverse
+//! of a path has the inverse `p`. Constant rotations on either side, or a reversal of time, change `p` by constant
+//! rotations only.
 
 use super::super::columns::{BLOCK, Mask};
 use super::align::follow_mean;
@@ -19,12 +20,13 @@ use crate::parallel::Interrupt;
 use crate::rotations::quaternion::{conjugate_one, dot, exp_one, product, unit};
 use crate::window::Boundary;
 
-/// Radians within a deviation of the mask: a joint that turns as steadily and faster spins. Averages of slower turns are long, and
-/// neighbours keep their signs.
+/// Radians within a standard deviation of the mask: a joint that rotates steadily and faster is spinning. Averages of
+/// slower rotations are long, and neighbours keep their signs.
 const FAST: f64 = 1.5;
 
-/// Length of an average of unit quaternions below which the joint may be spinning. At 1.5 rad within a deviation of the mask it
-/// is `exp(−1.5²/8)`; noise alone leaves as little from 0.9 rad per component of the rotation vector on.
+/// Length of an average of unit quaternions below which the joint may be spinning. At 1.5 rad within a standard
+/// deviation of the mask the length is `exp(−1.5²/8)`; noise alone gives it from 0.9 rad per component of the
+/// rotation vector on.
 const LONG_MEAN: f64 = 0.75;
 
 /// Whether one of the means `(frames)` is so short that the joint may be spinning.
@@ -38,7 +40,8 @@ pub(super) fn may_spin(means: [&[f64]; 4], frames: usize) -> bool {
     least < LONG_MEAN * LONG_MEAN
 }
 
-/// Makes the reference path of a joint that spins, with a mask of deviation `sigma`. Of one that does not, the reference stays.
+/// Computes the reference path of a spinning joint, with a mask of standard deviation `sigma`. If the joint does not
+/// spin, the reference is unchanged.
 pub(super) fn follow_spin(
     reference: [&mut [f64]; 4],
     (samples, trust): ([&[f64]; 4], Option<&[f64]>),
@@ -93,9 +96,10 @@ pub(super) fn follow_spin(
     Ok(())
 }
 
-/// Averages the turns from frame to frame as the body sees them, and then as the world does; returns the length of the longest mean.
+/// Averages the rotations from frame to frame in body coordinates, and in world coordinates; returns the length of
+/// the longest mean.
 ///
-/// Turns from or to a sample that is less trusted weigh less; those of no weight are none.
+/// Rotations from or to a sample of low confidence weigh less; those of weight 0 are ignored.
 fn mean_turns(
     samples: [&[f64]; 4],
     weights: Option<&[f64]>,
@@ -130,7 +134,7 @@ fn mean_turns(
     Ok((0..count).map(squares).fold(0.0, f64::max).sqrt())
 }
 
-/// Rolls turns out, so much of each: unit quaternions, the first of which is 1.
+/// Develops rotations scaled by `share`: unit quaternions, the first of which is 1.
 fn roll(turns: [&[f64]; 3], share: f64, frames: usize, out: &mut [&mut [f64]; 4]) {
     for i in 1..frames {
         let step = exp_one(turns.map(|plane| plane[i - 1] * share));

@@ -1,14 +1,14 @@
 //! Covariances of a pose and its velocity, and the gains that follow from them.
 //!
-//! The errors of the three coordinates are independent and alike, so that a covariance is a matrix of two rows times the
-//! identity, and a gain is a number. Time is counted in frames. From one frame to the next
+//! The errors of the three coordinates are independent and identically distributed, so a covariance is a 2 × 2 matrix
+//! times the identity, and a gain is a scalar. Time is counted in frames. From one frame to the next
 //!
 //! ```text
 //! F = [[1, 1], [0, 1]]     Q = q [[1/3, 1/2], [1/2, 1]]
 //! ```
 //!
-//! with the variance `q` that white acceleration adds to the velocity within a frame. The determinant is carried along: as
-//! a difference of large products it would be lost to rounding while the velocity is hardly known.
+//! with the variance `q` that white acceleration adds to the velocity within a frame. The determinant is stored too:
+//! as a difference of large products it would be lost to rounding while the velocity is hardly known.
 
 /// Covariance of the errors of pose and velocity.
 #[derive(Debug, Clone, Copy, Default)]
@@ -20,7 +20,7 @@ pub(in crate::filters) struct Covariance {
 }
 
 impl Covariance {
-    /// After one measurement of the pose: nothing is known of the velocity but its variance.
+    /// After one measurement of the pose: only the prior variance of the velocity is known.
     #[inline(always)]
     pub(super) fn first(pose: f64, velocity: f64) -> Self {
         Self { pose, cross: 0.0, velocity, determinant: pose * velocity }
@@ -48,26 +48,27 @@ impl Covariance {
         }
     }
 
-    /// What a measurement of the pose of variance `variance / trust` changes: shares of the innovation.
+    /// Gains of a measurement of the pose with the variance `variance / confidence`: the corrections of pose and
+    /// velocity per unit of innovation.
     #[inline(always)]
-    pub(super) fn gains(self, variance: f64, trust: f64) -> [f64; 2] {
-        let total = trust * self.pose + variance;
-        [trust * self.pose / total, trust * self.cross / total]
+    pub(super) fn gains(self, variance: f64, confidence: f64) -> [f64; 2] {
+        let total = confidence * self.pose + variance;
+        [confidence * self.pose / total, confidence * self.cross / total]
     }
 
-    /// After a measurement of the pose; without trust nothing changes.
+    /// Covariance after a measurement of the pose; confidence 0 changes nothing.
     #[inline(always)]
-    pub(super) fn updated(self, variance: f64, trust: f64) -> Self {
-        let total = trust * self.pose + variance;
+    pub(super) fn updated(self, variance: f64, confidence: f64) -> Self {
+        let total = confidence * self.pose + variance;
         Self {
             pose: self.pose * variance / total,
             cross: self.cross * variance / total,
-            velocity: (trust * self.determinant + self.velocity * variance) / total,
+            velocity: (confidence * self.determinant + self.velocity * variance) / total,
             determinant: self.determinant * variance / total,
         }
     }
 
-    /// The matrix `C = P Fᵀ (F P Fᵀ + Q)⁻¹` row by row: what one frame learns from the next.
+    /// The smoother gain `C = P Fᵀ (F P Fᵀ + Q)⁻¹`, row by row.
     #[inline(always)]
     pub(super) fn smoother_gains(self, q: f64) -> [f64; 4] {
         let Self { pose, cross, velocity, determinant } = self;

@@ -1,8 +1,8 @@
 //! The Kalman filter of constant angular velocity, and its smoother, on the manifold of rotations.
 //!
-//! R. E. Kalman, "A new approach to linear filtering and prediction problems"; H. E. Rauch, F. Tung and C. T. Striebel,
-//! "Maximum likelihood estimates of linear dynamic systems". Sums of numbers become steps along geodesics, differences
-//! become logarithms, and velocities are carried along by parallel transport:
+//! R. E. Kalman, "A new approach to linear filtering and prediction problems"; H. E. Rauch, F. Tung and C. T.
+//! Striebel, "Maximum likelihood estimates of linear dynamic systems". Sums become steps along geodesics, differences
+//! become logarithms, and velocities are moved by parallel transport:
 //!
 //! ```text
 //! predict   q⁻ = q exp(ω/2)                        ω⁻ = ω
@@ -10,7 +10,7 @@
 //! smooth    δ = 2 log(q⁻(t+1)⁻¹ qₛ(t+1)) …         qₛ = q exp((C₁₁δ + C₁₂δω)/2)
 //! ```
 //!
-//! Transport along a geodesic makes up for half of its turn.
+//! Transport along a geodesic compensates for half of its rotation.
 
 mod covariance;
 mod ratio;
@@ -27,32 +27,32 @@ use crate::rotations::quaternion;
 use crate::{ClipMut, ClipView, Error, Real};
 use rotations::{Forecasts, Later, Record, Variances};
 
-/// Frames between looks at the interrupt.
+/// Frames between two checks of the interrupt flag.
 const STRETCH: usize = 4096;
 
-/// Estimated nanoseconds per frame and joint of either direction.
+/// Estimated nanoseconds per frame and joint, for each direction.
 const NANOSECONDS: usize = 30;
 
 /// The parameters of the filter.
 #[derive(Debug, Clone)]
 pub struct Kalman {
-    /// Root of the spectral density of the angular acceleration per joint: radians / frame^1.5.
+    /// Square root of the spectral density of the angular acceleration per joint: radians / frame^1.5.
     pub process_noise: Vec<f64>,
-    /// Deviation of a measurement per joint and component of the rotation vector: radians, above 0.
+    /// Standard deviation of a measurement per joint and component of the rotation vector: radians, above 0.
     pub measurement_noise: Vec<f64>,
-    /// How many later frames a frame is smoothed with; `None` for all.
+    /// Number of later frames that the smoother uses; `None` for all.
     pub lookahead: Option<usize>,
 }
 
 impl Kalman {
     /// Filters `clip` along time into `out`, `(frames, joints, 4)`, sign-continuous from the hemisphere of the first frame.
     ///
-    /// The variance of a measurement is divided by its `confidence`, `(frames, joints)`; without any it counts for nothing.
-    /// Before a joint's first sample with confidence its pose stays as it is there. No sample may be missing otherwise.
-    /// Quaternions need not have length 1 exactly.
+    /// The variance of a measurement is divided by its `confidence`, `(frames, joints)`; samples with confidence 0
+    /// are ignored. Before a joint's first sample with confidence its pose is constant. No other sample may be
+    /// missing. Quaternions need not have length 1 exactly.
     ///
     /// # Errors
-    /// [`Error::Length`] if slices do not fit together; [`Error::Interrupted`].
+    /// [`Error::Length`] if the lengths of slices do not agree; [`Error::Interrupted`].
     pub fn filter<T: Real>(
         &self,
         clip: ClipView<'_, T>,
@@ -76,7 +76,7 @@ impl Kalman {
             records.clear();
             records.resize(frames, Record::STILL);
             for (frame, record) in records.iter_mut().enumerate() {
-                group.load(frame, &mut record.rotation, &mut record.trust);
+                group.load(frame, &mut record.rotation, &mut record.confidence);
             }
             let variances = Variances {
                 process: group.lane(&self.process_noise).map(|noise| noise * noise),
@@ -88,12 +88,12 @@ impl Kalman {
         lanes::run(clip, confidence, out, nanoseconds, filter).map(|_| ())
     }
 
-    /// How many later frames a frame of a clip of `frames` is smoothed with.
+    /// Number of later frames that the smoother uses in a clip of `frames` frames.
     fn reach(&self, frames: usize) -> usize {
         self.lookahead.unwrap_or(frames).min(frames - 1)
     }
 
-    /// Makes of records of samples records of smoothed rotations.
+    /// Replaces the samples in `records` by the smoothed rotations.
     fn run(&self, records: &mut [Record], variances: &Variances, interrupt: &Interrupt) -> Result<(), Error> {
         let (frames, reach) = (records.len(), self.reach(records.len()));
         forward(records, variances, interrupt)?;
@@ -112,7 +112,7 @@ impl Kalman {
     }
 }
 
-/// Makes of records of samples records of states, and tells how the forecasts fared.
+/// Replaces the samples in `records` by the filter's states, and returns the statistics of the forecasts.
 fn forward(records: &mut [Record], variances: &Variances, interrupt: &Interrupt) -> Result<Forecasts, Error> {
     let mut forecasts = Forecasts::default();
     rotations::begin(&mut records[0], variances, &mut forecasts);

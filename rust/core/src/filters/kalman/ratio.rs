@@ -1,9 +1,9 @@
-//! How stiff the filter is to be: process noise in units of measurement noise, chosen from the clip itself.
+//! Automatic process noise, in units of measurement noise, chosen from the clip itself.
 //!
 //! P. Craven and G. Wahba, "Smoothing noisy data with spline functions": generalised cross-validation.
 
 use super::forward;
-use super::rotations::{self, Later, Record, Variances, square, way_between};
+use super::rotations::{self, Later, Record, Variances, displacement_between, square};
 use super::vectors;
 use crate::error::check_length;
 use crate::filters::lanes::{LANES, Lane, of_lane, select, set_lane};
@@ -12,11 +12,11 @@ use crate::rotations::quaternion::unit;
 use crate::simd::multiversion;
 use crate::{ClipView, Error, Real};
 
-/// Decades between the candidates.
+/// Step between the candidates, in decades.
 const STEP: f64 = 0.5;
 
-/// Ratios of process variance to measurement variance, per frame³. With the least of them the smoother sees some 200
-/// frames to either side, with the largest it hardly changes anything.
+/// Ratios of process variance to measurement variance, per frame³. With the smallest the smoother uses some 200
+/// frames on either side; with the largest it changes almost nothing.
 const CANDIDATES: [f64; 3 * LANES] = [
     1e-9,
     3.162_277_660_168_379_3e-9,
@@ -44,27 +44,27 @@ const CANDIDATES: [f64; 3 * LANES] = [
     3.162_277_660_168_379_3e2,
 ];
 
-/// Least number of measurements from which a ratio is chosen; with fewer it is 1.
+/// Least number of measurements for choosing a ratio; with fewer it is 1.
 const FEWEST: usize = 8;
 
-/// So many measurements make the first velocity. A forecast before tells nothing.
+/// Number of measurements that determine the first velocity. Earlier forecasts carry no information.
 const KNOWN: usize = 2;
 
-/// What the candidates did to one joint, summed over the measurements.
+/// Statistics of one joint for each candidate, summed over the measurements.
 #[derive(Debug, Default)]
 struct Scores {
-    /// Squares of the innovations, each times its confidence.
+    /// Squared innovations, each times its confidence.
     errors: [f64; CANDIDATES.len()],
     /// Sum of these confidences.
     weights: [f64; CANDIDATES.len()],
-    /// Squared ways from the smoothed values to the measurements, each times its confidence.
+    /// Squared distances between the smoothed values and the measurements, each times its confidence.
     residuals: [f64; CANDIDATES.len()],
-    /// Shares that the measurements have in their own smoothed values.
+    /// Weights of the measurements in their own smoothed values.
     shares: [f64; CANDIDATES.len()],
 }
 
 impl Scores {
-    /// The best ratio, if `measured` samples have confidence.
+    /// The best ratio, given `measured` samples with confidence.
     fn best(&self, measured: usize, lookahead: Option<usize>) -> f64 {
         if measured < FEWEST {
             return 1.0;
@@ -98,7 +98,8 @@ impl Scores {
     }
 }
 
-/// The candidate `best`, moved to the vertex of the parabola through the logarithms of a minimum and its neighbours.
+/// The candidate `best`, refined to the vertex of the parabola through the logarithms of the minimum and its
+/// neighbours.
 fn refined(criterion: &[f64; CANDIDATES.len()], best: usize) -> f64 {
     let ratio = CANDIDATES[best];
     if best == 0 || best + 1 == CANDIDATES.len() {
@@ -116,14 +117,15 @@ fn refined(criterion: &[f64; CANDIDATES.len()], best: usize) -> f64 {
 
 /// Chooses the process noise of [`super::Kalman`] from a clip, per joint: radians / frame^1.5.
 ///
-/// The forward filter, `lookahead` 0, takes the candidate whose forecasts lie nearest to the samples that follow. The
-/// smoother goes on from there to a minimum of the generalised cross-validation `Σ c |z − x|² / (1 − Σ h / n)²` of the `n`
-/// samples `z` with confidence `c`, their smoothed values `x`, and the share `h` of each sample in its own smoothed value.
+/// The forward filter, `lookahead` 0, takes the candidate whose forecasts are nearest to the next samples. From there
+/// the smoother descends to a minimum of the generalised cross-validation `Σ c |z − x|² / (1 − Σ h / n)²`. Here `z`
+/// are the `n` samples with confidence `c`, `x` their smoothed values, and `h` the weight of each sample in its own
+/// smoothed value.
 ///
-/// The clip consists of blocks of `block` frames, at least 1, that do not hang together.
+/// The clip consists of independent blocks of `block` frames, at least 1.
 ///
 /// # Errors
-/// [`Error::Length`] if slices do not fit together; [`Error::Interrupted`].
+/// [`Error::Length`] if the lengths of slices do not agree; [`Error::Interrupted`].
 pub fn process_noise<T: Real>(
     clip: ClipView<'_, T>,
     confidence: Option<&[T]>,
@@ -139,8 +141,9 @@ pub fn process_noise<T: Real>(
     parallel::map(measurement_noise.to_vec(), nanoseconds, |joint, noise| {
         let samples: Vec<([f64; 4], f64)> = (0..frames)
             .map(|frame| {
-                let trust = confidence.map_or(1.0, |confidence| confidence[frame * joints + joint].to_f64());
-                (unit(clip.at(frame, joint).map(T::to_f64)), trust)
+                let confidence =
+                    confidence.map_or(1.0, |confidence| confidence[frame * joints + joint].to_f64());
+                (unit(clip.at(frame, joint).map(T::to_f64)), confidence)
             })
             .collect();
         let mut scores = Scores::default();
@@ -150,12 +153,12 @@ pub fn process_noise<T: Real>(
                 judge(samples, noise * noise, first, &mut records, &mut scores, interrupt)?;
             }
         }
-        let measured = samples.iter().filter(|(_, trust)| *trust > 0.0).count();
+        let measured = samples.iter().filter(|(_, confidence)| *confidence > 0.0).count();
         Ok(scores.best(measured, lookahead).sqrt() * noise)
     })
 }
 
-/// Adds what the candidates from `first` do to a block of samples.
+/// Adds the statistics of the candidates from `first` on for a block of samples.
 fn judge(
     samples: &[([f64; 4], f64)],
     variance: f64,
@@ -165,7 +168,7 @@ fn judge(
     interrupt: &Interrupt,
 ) -> Result<(), Error> {
     records.clear();
-    records.extend(samples.iter().map(|(sample, trust)| Record::alike(*sample, *trust)));
+    records.extend(samples.iter().map(|(sample, confidence)| Record::alike(*sample, *confidence)));
     let variances = Variances {
         process: std::array::from_fn(|i| CANDIDATES[first + i] * variance),
         measurement: [variance; LANES],
@@ -186,22 +189,22 @@ fn judge(
 }
 
 multiversion! {
-    /// Adds up the squared ways from the smoothed rotations to the samples, each times its confidence, and the shares that
-    /// the samples have in them.
+    /// Adds the squared distances between smoothed rotations and samples, each times its confidence, and the weights
+    /// of the samples in them.
     fn compare(
         samples: &[([f64; 4], f64)], records: &[Record], variances: &Variances,
         residuals: &mut Lane, shares: &mut Lane,
     ) {
         let (mut distances, mut own) = ([0.0; LANES], [0.0; LANES]);
         let mut smooth = [[0.0; LANES]; 3];
-        for (index, ((sample, trust), record)) in samples.iter().zip(records).rev().enumerate() {
+        for (index, ((sample, confidence), record)) in samples.iter().zip(records).rev().enumerate() {
             for i in 0..LANES {
                 let known = record.covariance(i);
                 let after = known.smoothed(of_lane(&smooth, i), variances.process[i]);
                 let better = select(index == 0, [known.pose, known.cross, known.velocity], after);
                 set_lane(&mut smooth, i, better);
-                distances[i] += trust * square(way_between(*sample, record.rotation(i)));
-                own[i] += trust * better[0] / variances.measurement[i];
+                distances[i] += confidence * square(displacement_between(*sample, record.rotation(i)));
+                own[i] += confidence * better[0] / variances.measurement[i];
             }
         }
         *residuals = distances;
@@ -209,11 +212,11 @@ multiversion! {
     }
 }
 
-/// Chooses the ratios of [`super::filter_vectors`] for the `columns` of `values`, `(frames, columns)`, as [`process_noise`]
-/// does.
+/// Chooses the ratios of [`super::filter_vectors`] for the `columns` of `values`, `(frames, columns)`, with the
+/// criterion of [`process_noise`].
 ///
 /// # Errors
-/// [`Error::Length`] if `values` is no whole number of rows; [`Error::Interrupted`].
+/// [`Error::Length`] if the length of `values` is not a multiple of `columns`; [`Error::Interrupted`].
 pub fn vectors_ratio<T: Real>(
     values: &[T],
     columns: usize,
@@ -237,7 +240,7 @@ pub fn vectors_ratio<T: Real>(
     })
 }
 
-/// Adds what a candidate does to a block of numbers.
+/// Adds the statistics of a candidate for a block of scalars.
 fn judge_numbers(values: &[f64], ratio: f64, k: usize, scores: &mut Scores) {
     let (mut errors, mut residuals, mut shares) = (0.0, 0.0, 0.0);
     let mut count = 1;

@@ -1,14 +1,14 @@
-//! The Kalman filter of constant velocity, and its smoother, on numbers.
+//! The Kalman filter of constant velocity, and its smoother, on scalars.
 
 use super::covariance::Covariance;
 use crate::error::check_length;
 use crate::parallel::{self, Interrupt};
 use crate::{Error, Real};
 
-/// Variance of the velocity before anything is known of it, in variances of a measurement.
+/// Variance of the velocity before it is known, in variances of a measurement.
 const UNKNOWN_VELOCITY: f64 = 1e10;
 
-/// What is known of a column at one frame.
+/// State of a column at one frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct State {
     pub(super) value: f64,
@@ -16,7 +16,7 @@ pub(super) struct State {
     pub(super) covariance: Covariance,
 }
 
-/// Filters a column forward; `judge` is told the innovations in order.
+/// Filters a column forward; calls `judge` with each innovation in order.
 pub(super) fn forward(
     values: impl IntoIterator<Item = f64>,
     ratio: f64,
@@ -45,7 +45,7 @@ pub(super) fn forward(
     states
 }
 
-/// Smooths backward: tells `take` the values from the last state to the first.
+/// Smooths backward; calls `take` with the values from the last state to the first.
 pub(super) fn backward(states: &[State], ratio: f64, mut take: impl FnMut(f64)) {
     let Some((last, states)) = states.split_last() else { return };
     let (mut value, mut velocity) = (last.value, last.velocity);
@@ -60,13 +60,13 @@ pub(super) fn backward(states: &[State], ratio: f64, mut take: impl FnMut(f64)) 
     }
 }
 
-/// Filters the columns of `values`, `(frames, columns)`, one for each of the `ratios`, forward in time, and smooths them
-/// with what comes later: up to `lookahead` frames, `None` for all.
+/// Filters the columns of `values`, `(frames, columns)`, one for each of the `ratios`, forward in time. Smooths them
+/// with up to `lookahead` later frames, `None` for all.
 ///
 /// A ratio is the spectral density of the acceleration in variances of a measurement, 1 / frame³, above 0.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit together; [`Error::Interrupted`].
+/// [`Error::Length`] if the lengths of slices do not agree; [`Error::Interrupted`].
 pub fn filter_vectors<T: Real>(
     values: &[T],
     ratios: &[f64],

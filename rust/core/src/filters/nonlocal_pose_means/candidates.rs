@@ -1,4 +1,4 @@
-//! The most similar candidates of each frame of a tile, in the clip and in a library, found by the patch search.
+//! The most similar candidates of each frame of a tile, from the clip and a library, by patch search.
 
 use super::kernels::{FARTHEST, SHIFT};
 use super::means::Means;
@@ -15,13 +15,13 @@ use crate::search::patch_neighbors::{Loaded, Poses};
 use crate::{ClipView, Error, Real};
 use std::ops::Range;
 
-/// The largest factor of a squared difference: sums of such products stay finite in float32 too.
+/// Largest factor of a squared difference: sums of such products stay finite in float32 too.
 const LARGEST_FACTOR: f64 = 1e30;
 
-/// Coordinates of a rotation: what a pair of samples counts in the divisor of a mean.
+/// Coordinates of a rotation: the weight of a pair of samples in the divisor of a mean.
 const COORDINATES: f64 = 3.0;
 
-/// Frames from which it pays to look for diagonals that do not matter.
+/// Least number of frames for which bounds pay off.
 const MANY_FRAMES: usize = 128;
 
 /// Clips whose frames are candidates of every frame.
@@ -36,14 +36,14 @@ pub(super) struct Library<T> {
 struct Scene<T> {
     loaded: Loaded<T>,
     frames: usize,
-    /// Its first frame, counted through the library.
+    /// Index of its first frame, counted through the library.
     first: usize,
-    /// One for each group of joints that share weights, where samples are complete.
+    /// Bounds for each group of joints that share weights, if no sample is missing.
     bounds: Vec<Bounds<T>>,
 }
 
 impl<T: Real> Library<T> {
-    /// Loads clips; `shared` tells whether samples of the filtered clip have confidences.
+    /// Loads clips; `shared` is whether samples of the filtered clip have confidences.
     pub(super) fn new(
         filter: &NonlocalPoseMeans,
         clip: ClipView<'_, T>,
@@ -59,7 +59,7 @@ impl<T: Real> Library<T> {
         for clip in clips.iter().filter(|clip| clip.frames() > 0) {
             let mut loaded = Loaded::default();
             poses.load(*clip, 0..clip.frames(), pad, &mut loaded);
-            // The signs of the filtered clip are its own.
+            // The signs of the filtered clip do not apply to those of the library.
             let joints = loaded.features().joints.iter().map(|joint| Joint { kind: Kind::Wide, ..*joint });
             let joints: Vec<Joint> = joints.collect();
             let features = Features { joints: &joints, ..loaded.features() };
@@ -78,7 +78,7 @@ impl<T: Real> Library<T> {
         Ok(Self { scenes, frames })
     }
 
-    /// Planes of a joint of the scene that holds a frame, the frame's column, and how far the sample counts.
+    /// Planes of a joint of the clip that contains a frame, the frame's column, and the weight of the sample.
     pub(super) fn sample(&self, frame: usize, joint: usize, before: usize) -> ([T; 4], T) {
         let scene = &self.scenes[self.scenes.partition_point(|scene| scene.first <= frame) - 1];
         let column = before + frame - scene.first;
@@ -89,7 +89,7 @@ impl<T: Real> Library<T> {
 }
 
 impl NonlocalPoseMeans {
-    /// How patches of some joints are compared: by the square roots of the exponents.
+    /// The patch distance of some joints: the square root of the exponent.
     pub(super) fn measure<T: Real>(&self, joints: Range<usize>, reach: Reach) -> Measure<T> {
         let factor = |bandwidth: &f64| T::from_f64((0.5 / bandwidth.powi(2)).min(LARGEST_FACTOR));
         Measure {
@@ -104,7 +104,7 @@ impl NonlocalPoseMeans {
 }
 
 impl<T: Real> Tile<'_, T> {
-    /// How each joint is compared.
+    /// The distance of each joint.
     fn kinds(&self) -> Vec<Joint> {
         let kind = |chart: &JointChart<T>| match chart {
             JointChart::Local => Kind::Wide,
@@ -118,13 +118,14 @@ impl<T: Real> Tile<'_, T> {
         Features { planes: &self.planes, joints: kinds, shares: self.confidence.as_ref() }
     }
 
-    /// The candidates of the clip; their numbers are their columns.
+    /// The candidates of the clip; their indices are their columns.
     fn own<'a>(&self, features: Features<'a, T>) -> Side<'a, T> {
         let Range { start, end } = self.candidates;
         Side { features, at: start, first: start, count: end - start }
     }
 
-    /// What the candidates are never nearer than, for each group, where the search goes through all of it and that tells anything.
+    /// Lower bounds of the candidates' distances for each group, if the search covers the whole clip and the bounds
+    /// apply.
     pub(super) fn bounds(&self, interrupt: &Interrupt) -> Result<Vec<Bounds<T>>, Error> {
         let reach = self.clip.reach;
         let far = self.clip.filter.neighbors.is_some() && !reach.added && self.clip.frames >= MANY_FRAMES;
@@ -165,7 +166,7 @@ impl<T: Real> Tile<'_, T> {
         let lags = Lags { within: -reach.back.cast_signed()..=reach.ahead.cast_signed(), without: 0..=0 };
         let window = Join { measure: &measure, frames, candidates, lags, bounds, mutual: false };
         window.run(&lists, scratch, interrupt)?;
-        // Frames of the library come after all columns.
+        // Indices of library frames follow those of all columns.
         let beyond = self.planes.length();
         for scene in library.iter().flat_map(|library| &library.scenes) {
             let candidates = Side {

@@ -1,7 +1,7 @@
-//! The weighted means of a tile: sums per joint, settled group by group.
+//! Weighted means of a tile: sums per joint, divided by their weights group by group.
 
 use super::kernels::{self, LANE, Lags, SHIFT};
-use super::likeness::Likeness;
+use super::patch_distance::PatchDistances;
 use super::path::JointChart;
 use super::tile::{Piece, Tile};
 use crate::Real;
@@ -9,10 +9,11 @@ use crate::clip::Planes;
 use crate::rotations::quaternion::{between, log_short};
 use std::ops::Range;
 
-/// Exponent of the floor of the self-weight: a frame without likeness comes back unchanged, in float32 and float64.
+/// Exponent of the floor of the self-weight: a frame without similar candidates is returned unchanged, in float32 and
+/// float64.
 const FLOOR: f64 = -80.0;
 
-/// Sums of weighted samples, and what they are divided by.
+/// Sums of weighted samples, and their divisors.
 pub(super) struct Means<'a, T> {
     tile: &'a Tile<'a, T>,
     /// The joints that share the weights being added.
@@ -21,24 +22,25 @@ pub(super) struct Means<'a, T> {
     most: Vec<T>,
     /// Sum of the candidates' weights, per frame.
     total: Vec<T>,
-    /// Per joint, and then for the translation: sums of 3 coordinates and, with confidence, of its share of weights; when
-    /// settled, the means.
+    /// Per joint, then for the translation: sums of 3 coordinates and, with confidence, of the weights; after
+    /// division, the means.
     sums: Planes<T>,
-    /// Whether the group's sums in fixed charts hold nothing yet but what is left over in memory.
+    /// Whether the group's sums in fixed charts still hold stale memory.
     fresh: bool,
-    /// With confidence: per joint (fixed chart) and translation, the samples times their confidence, and it.
-    trusted: Option<Planes<T>>,
+    /// With confidence: per joint (fixed chart) and translation, the samples times their confidence, and the
+    /// confidence.
+    weighted: Option<Planes<T>>,
 }
 
-/// Planes per joint: 3 coordinates, and the share of weights.
+/// Planes per joint: 3 coordinates, and the sum of weights.
 const PER_JOINT: usize = 4;
 
 impl<'a, T: Real> Means<'a, T> {
     pub(super) fn new(tile: &'a Tile<'a, T>, mut sums: Planes<T>) -> Self {
         let joints = tile.rows.len();
         let padded = tile.frames.next_multiple_of(LANE);
-        let trusted = tile.confidence.as_ref().map(|confidence| {
-            let mut trusted = Planes::new((joints + 1) * PER_JOINT, tile.planes.length());
+        let weighted = tile.confidence.as_ref().map(|confidence| {
+            let mut weighted = Planes::new((joints + 1) * PER_JOINT, tile.planes.length());
             let moved =
                 tile.translation.as_ref().map(|translation| (joints, 0, translation.rows_from::<3>(0)));
             let fixed = (0..joints)
@@ -47,7 +49,7 @@ impl<'a, T: Real> Means<'a, T> {
             for (index, joint, planes) in fixed.chain(moved) {
                 for (c, x) in planes.into_iter().enumerate() {
                     kernels::multiply_planes(
-                        trusted.row_mut(index * PER_JOINT + c),
+                        weighted.row_mut(index * PER_JOINT + c),
                         x,
                         confidence.row(joint),
                     );
@@ -55,9 +57,9 @@ impl<'a, T: Real> Means<'a, T> {
             }
             for index in 0..=joints {
                 let joint = if index == joints { 0 } else { index };
-                trusted.row_mut(index * PER_JOINT + 3).copy_from_slice(confidence.row(joint));
+                weighted.row_mut(index * PER_JOINT + 3).copy_from_slice(confidence.row(joint));
             }
-            trusted
+            weighted
         });
         sums.reshape((joints + 1) * PER_JOINT, padded);
         Self {
@@ -67,11 +69,11 @@ impl<'a, T: Real> Means<'a, T> {
             total: vec![T::ZERO; padded],
             sums,
             fresh: true,
-            trusted,
+            weighted,
         }
     }
 
-    /// Starts with the joints of a group, which share weights.
+    /// Starts the joints of a group, which share weights.
     pub(super) fn begin(&mut self, group: Range<usize>) {
         self.group = group;
         self.most.fill(T::ZERO);
@@ -90,22 +92,22 @@ impl<'a, T: Real> Means<'a, T> {
         }
     }
 
-    /// Gives the memory of the sums back.
+    /// Returns the memory of the sums.
     pub(super) fn into_sums(self) -> Planes<T> {
         self.sums
     }
 
-    /// The translation, if the group takes it along.
+    /// The translation, if the group includes it.
     fn moved(&self) -> Option<&'a Planes<T>> {
         self.tile.translation.as_ref().filter(|_| self.group.start == 0)
     }
 
-    /// Notes one lag's weights: their largest and their sum.
+    /// Updates the largest weight and the sum of weights with those of one lag.
     pub(super) fn note(&mut self, weights: &[T]) {
         kernels::note_weights(&mut self.most, &mut self.total, weights);
     }
 
-    /// What has a fixed chart: its index among the sums, and the planes of its samples.
+    /// Joints and translation with a fixed chart: their index among the sums, and the planes of their samples.
     fn fixed(&self) -> Vec<(usize, [&'a [T]; 3])> {
         let tile = self.tile;
         let joints = self.group.clone().filter(|&joint| tile.clip.paths.charts[joint] != JointChart::Local);
@@ -126,10 +128,10 @@ impl<'a, T: Real> Means<'a, T> {
         let block = Lags { at: self.tile.at, first, count, forward, backward, fresh: self.fresh };
         for (index, planes) in self.fixed() {
             let row = index * PER_JOINT;
-            match &self.trusted {
+            match &self.weighted {
                 None => kernels::accumulate(self.sums.rows_mut::<3>(row), planes, &block),
-                Some(trusted) => {
-                    let planes = trusted.rows_from::<PER_JOINT>(row);
+                Some(weighted) => {
+                    let planes = weighted.rows_from::<PER_JOINT>(row);
                     kernels::accumulate(self.sums.rows_mut::<PER_JOINT>(row), planes, &block);
                 }
             }
@@ -137,23 +139,23 @@ impl<'a, T: Real> Means<'a, T> {
         self.fresh = false;
     }
 
-    /// Adds the samples of pairs that were just weighed, for joints in the local chart.
+    /// Adds the samples of the pairs weighted last, for joints in the local chart.
     ///
-    /// A pair's half rotation vector is the same at either of its frames, up to its sign.
-    pub(super) fn add_local(&mut self, likeness: &Likeness<'_, T>, piece: &Piece, lag: usize) {
+    /// A pair's half rotation vector is the same at both of its frames, up to its sign.
+    pub(super) fn add_local(&mut self, distances: &PatchDistances<'_, T>, piece: &Piece, lag: usize) {
         let tile = self.tile;
         for joint in self.group.clone().filter(|&joint| tile.clip.paths.charts[joint] == JointChart::Local) {
             for (side, sign, later) in [(&piece.forward, T::ONE, lag), (&piece.backward, -T::ONE, 0)] {
                 let Some(side) = side else { continue };
-                let mut weights = likeness.current()[side.pairs.clone()].to_vec();
-                if let Some(trusted) = &self.trusted {
+                let mut weights = distances.current()[side.pairs.clone()].to_vec();
+                if let Some(weighted) = &self.weighted {
                     let from = piece.pairs.start + side.pairs.start + later;
-                    let confidence = &trusted.row(joint * PER_JOINT + 3)[from..from + weights.len()];
+                    let confidence = &weighted.row(joint * PER_JOINT + 3)[from..from + weights.len()];
                     for (weight, c) in weights.iter_mut().zip(confidence) {
                         *weight *= *c;
                     }
                 }
-                let logs = likeness.pair_logs(joint, side.pairs.clone());
+                let logs = distances.pair_logs(joint, side.pairs.clone());
                 let [x, y, z, share] = self
                     .sums
                     .rows_mut::<PER_JOINT>(joint * PER_JOINT)
@@ -168,14 +170,15 @@ impl<'a, T: Real> Means<'a, T> {
         }
     }
 
-    /// Adds one candidate, which stands at a column of the planes, to one frame of the tile.
+    /// Adds one candidate, at a column of the planes, to one frame of the tile.
     pub(super) fn add_one(&mut self, frame: usize, candidate: usize, weight: T) {
         let tile = self.tile;
         self.most[frame] = self.most[frame].max(weight);
         self.total[frame] += weight;
         for joint in self.group.clone() {
             let row = joint * PER_JOINT;
-            let trust = self.trusted.as_ref().map_or(T::ONE, |trusted| trusted.row(row + 3)[candidate]);
+            let confidence =
+                self.weighted.as_ref().map_or(T::ONE, |weighted| weighted.row(row + 3)[candidate]);
             let value = if tile.clip.paths.charts[joint] == JointChart::Local {
                 let q = tile.planes.rows_from::<4>(tile.rows[joint]);
                 let at = |i: usize| q.map(|q| q[i]);
@@ -183,12 +186,18 @@ impl<'a, T: Real> Means<'a, T> {
             } else {
                 tile.planes.rows_from::<3>(tile.rows[joint]).map(|x| x[candidate])
             };
-            self.add_value(row, frame, weight * trust, value);
+            self.add_value(row, frame, weight * confidence, value);
         }
         if let Some(translation) = self.moved() {
             let row = tile.rows.len() * PER_JOINT;
-            let trust = self.trusted.as_ref().map_or(T::ONE, |trusted| trusted.row(row + 3)[candidate]);
-            self.add_value(row, frame, weight * trust, translation.rows_from::<3>(0).map(|x| x[candidate]));
+            let confidence =
+                self.weighted.as_ref().map_or(T::ONE, |weighted| weighted.row(row + 3)[candidate]);
+            self.add_value(
+                row,
+                frame,
+                weight * confidence,
+                translation.rows_from::<3>(0).map(|x| x[candidate]),
+            );
         }
     }
 
@@ -199,9 +208,9 @@ impl<'a, T: Real> Means<'a, T> {
         self.most[frame] = self.most[frame].max(weight);
         self.total[frame] += weight;
         for joint in self.group.clone() {
-            let (r, trust) = library.sample(other, joint, tile.clip.reach.before);
+            let (r, confidence) = library.sample(other, joint, tile.clip.reach.before);
             let q = tile.planes.rows_from::<4>(tile.rows[joint]).map(|q| q[tile.at + frame]);
-            self.add_value(joint * PER_JOINT, frame, weight * trust, log_short(between(q, r)));
+            self.add_value(joint * PER_JOINT, frame, weight * confidence, log_short(between(q, r)));
         }
     }
 
@@ -212,13 +221,14 @@ impl<'a, T: Real> Means<'a, T> {
         self.sums.row_mut(row + 3)[frame] += weight;
     }
 
-    /// Divides the sums of the group by their weights: means in the chart, or about the sample in the local chart.
+    /// Divides the sums of the group by their weights: means in the chart, or relative to the sample in the local
+    /// chart.
     pub(super) fn settle(&mut self) {
         let tile = self.tile;
         let floor = T::from_f64(SHIFT + FLOOR).exp();
         let own: Vec<T> = self.most.iter().map(|most| most.max(floor)).collect();
         let here = tile.at..tile.at + tile.frames;
-        let mut trusted_own = own.clone();
+        let mut weighted_own = own.clone();
         let moved = self.moved().map(|translation| (tile.rows.len(), Some(translation.rows_from::<3>(0))));
         let joints = self.group.clone().map(|joint| {
             let fixed = tile.clip.paths.charts[joint] != JointChart::Local;
@@ -226,31 +236,32 @@ impl<'a, T: Real> Means<'a, T> {
         });
         for (index, planes) in joints.chain(moved) {
             let row = index * PER_JOINT;
-            if let Some(trusted) = &self.trusted {
-                let confidence = &trusted.row(row + 3)[here.clone()];
-                kernels::multiply_planes(&mut trusted_own[..tile.frames], &own, confidence);
+            if let Some(weighted) = &self.weighted {
+                let confidence = &weighted.row(row + 3)[here.clone()];
+                kernels::multiply_planes(&mut weighted_own[..tile.frames], &own, confidence);
             }
             let [x, y, z, share] = self.sums.rows_mut::<PER_JOINT>(row).map(|sums| &mut sums[..tile.frames]);
             // Frames of the library have weights, but no translation.
             let apart = index == tile.rows.len() && tile.clip.library.is_some();
-            let total = if self.trusted.is_some() || apart { &share[..] } else { &self.total[..tile.frames] };
+            let total =
+                if self.weighted.is_some() || apart { &share[..] } else { &self.total[..tile.frames] };
             for (c, sums) in [x, y, z].into_iter().enumerate() {
                 match planes {
-                    Some(planes) => kernels::settle(sums, &planes[c][here.clone()], total, &trusted_own),
-                    None => kernels::settle_local(sums, total, &trusted_own),
+                    Some(planes) => kernels::settle(sums, &planes[c][here.clone()], total, &weighted_own),
+                    None => kernels::settle_local(sums, total, &weighted_own),
                 }
             }
         }
     }
 
-    /// Writes the settled means to `out`, `(frames, joints, 4)`, and to `moved`, `(frames, 3)`.
+    /// Writes the means to `out`, `(frames, joints, 4)`, and to `moved`, `(frames, 3)`.
     ///
-    /// Returns whether the sign of a rotation turns from one frame to the next.
+    /// Returns whether the sign of a rotation changes from one frame to the next.
     pub(super) fn store(&self, out: &mut [T], moved: &mut [T], rows: &mut [[T; 4]]) -> bool {
         let tile = self.tile;
         let joints = tile.rows.len();
         let (samples, _) = out.as_chunks_mut::<4>();
-        // Rows are put together in a buffer that stays in the cache, and then written once, in order.
+        // Rows are assembled in a buffer that stays in the cache, and then written once, in order.
         let mut before: Option<Vec<[T; 4]>> = None;
         let mut turned = false;
         for (chunk, out) in samples.chunks_mut(LANE * joints).enumerate() {

@@ -1,4 +1,4 @@
-//! Non-local pose means: each pose becomes a mean of the poses whose neighbourhood in time looks alike.
+//! Non-local pose means: each pose becomes a weighted mean of the poses with similar neighbourhoods in time.
 //!
 //! C. J. Dean and J. P. Lewis, "Non-local pose means for denoising motion capture data". With `x_t` the poses as
 //! rotation vectors in a chart, patches `P_t = (x_{t−r} … x_{t+r})` and the learning window `|s − t| ≤ k`:
@@ -9,21 +9,21 @@
 //! x̂_t     = Σ f(t, s) x_s / Σ f(t, s)
 //! ```
 //!
-//! Along one lag `ℓ = s − t` the patch distance is a sliding sum of per-frame distances, so the cost does not grow with
-//! the patch, and lag `ℓ` serves lag `−ℓ`. The clip is worked through in tiles of frames, in parallel; a tile holds its
-//! own planes, so memory beyond input and output is a byte per sample and a few hundred kB per thread.
+//! Along one lag `ℓ = s − t` the patch distance is a sliding sum of per-frame distances. So the cost does not grow
+//! with the patch, and lag `ℓ` also serves lag `−ℓ`. The clip is processed in tiles of frames, in parallel. A tile
+//! has its own planes: memory beyond input and output is a byte per sample and a few hundred kB per thread.
 //!
-//! - `path`: the sign-continuous path of each joint and the chart that holds it;
-//! - `tile`: one tile, loaded into planes, and the pairs of frames that matter to it;
-//! - `likeness`: patch distances and weights;
+//! - `path`: the sign-continuous path of each joint and its chart;
+//! - `tile`: one tile as planes, and the pairs of frames that it needs;
+//! - `patch_distance`: patch distances and weights;
 //! - `means`: weighted means, and back to quaternions;
-//! - `candidates`: only the most similar patches count, found by the patch search, also in a library of other clips;
+//! - `candidates`: the most similar patches only, by patch search, optionally in a library of other clips;
 //! - `kernels`: the vectorised loops.
 
 mod candidates;
 mod kernels;
-mod likeness;
 mod means;
+mod patch_distance;
 mod path;
 mod tile;
 
@@ -38,32 +38,32 @@ use std::ops::Range;
 use std::sync::Mutex;
 use tile::{Buffers, Clip, Tile};
 
-/// Where rotations become vectors.
+/// Chart that converts rotations to vectors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Chart {
-    /// The sign-continuous path at each joint's Karcher mean; a joint that turns too far uses [`Chart::Local`].
+    /// The sign-continuous path at each joint's Karcher mean; a joint with too large rotations uses [`Chart::Local`].
     Mean,
     /// The sign-continuous path at the identity: the paper's.
     Identity,
-    /// Each pair of frames at one of them.
+    /// One of the two frames, for each pair of frames.
     Local,
 }
 
-/// What shares weights.
+/// Joints that share weights.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Weights {
     /// All joints of a pose.
     Pose,
-    /// Nothing: each joint finds its own repetitions.
+    /// None: each joint has its own weights.
     Joint,
 }
 
-/// How squares are put together to a patch distance.
+/// Combination of squares to a patch distance.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Distance {
     /// Mean over the patch's frames and coordinates.
     Mean,
-    /// Sum: the printed equation.
+    /// Sum, as in the printed equation.
     Sum,
 }
 
@@ -78,19 +78,19 @@ pub struct NonlocalPoseMeans {
     pub bandwidth: Vec<f64>,
     /// Mean or sum of squares.
     pub distance: Distance,
-    /// What shares weights.
+    /// Joints that share weights.
     pub weights: Weights,
-    /// How many of the most similar patches count; `None` for all.
+    /// Number of most similar patches that have weights; `None` for all.
     pub neighbors: Option<usize>,
-    /// Where rotations become vectors.
+    /// Chart that converts rotations to vectors.
     pub chart: Chart,
-    /// How the clip goes on beyond its ends.
+    /// Continuation of the clip beyond its ends.
     pub boundary: Boundary,
-    /// How many later frames may be touched; `None` for as many as the window asks for.
+    /// Largest number of later frames that are used; `None` for the whole window.
     pub lookahead: Option<usize>,
 }
 
-/// The root's translation that is filtered along, with the weights of the pose (or of the first joint).
+/// The root's translation, filtered with the weights of the pose (or of the first joint).
 #[derive(Debug)]
 pub struct Translation<'a, T> {
     /// `(frames, 3)`.
@@ -99,12 +99,12 @@ pub struct Translation<'a, T> {
     pub out: &'a mut [T],
 }
 
-/// The reach of the window, settled.
+/// The extent of the window in a clip.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reach {
-    /// Earlier frames that are candidates.
+    /// Number of earlier frames that are candidates.
     pub(super) back: usize,
-    /// Later frames that are candidates.
+    /// Number of later frames that are candidates.
     pub(super) ahead: usize,
     /// Frames of a patch before its centre.
     pub(super) before: usize,
@@ -125,7 +125,7 @@ impl NonlocalPoseMeans {
         }
     }
 
-    /// The reach in a clip of so many frames.
+    /// The extent of the window in a clip of `frames` frames.
     pub(super) fn reach(&self, frames: usize) -> Reach {
         let window = self.search_radius.unwrap_or_else(|| frames.saturating_sub(1));
         let after = self.patch_radius.min(self.lookahead.unwrap_or(usize::MAX));
@@ -141,14 +141,14 @@ impl NonlocalPoseMeans {
 
     /// Filters `clip` along time into `out`, `(frames, joints, 4)`, sign-continuous from the hemisphere of the first frame.
     ///
-    /// No sample may be missing. `confidence`, `(frames, joints)` in 0…1, weighs samples in patch distances and in means.
-    /// Quaternions need not have length 1 exactly.
+    /// No sample may be missing. `confidence`, `(frames, joints)` in 0…1, weights samples in patch distances and in
+    /// means. Quaternions need not have length 1 exactly.
     ///
-    /// Frames of `library` are candidates of every frame, wherever they are; only with the local chart and a number of
-    /// neighbours. Their samples may be missing.
+    /// Frames of `library` are candidates of every frame, at any distance in time; this requires the local chart and
+    /// a number of neighbours. Their samples may be missing.
     ///
     /// # Errors
-    /// [`Error::Length`] if slices do not fit together; [`Error::Interrupted`].
+    /// [`Error::Length`] if the lengths of slices do not agree; [`Error::Interrupted`].
     pub fn filter<T: Real>(
         &self,
         clip: ClipView<'_, T>,
@@ -183,11 +183,10 @@ impl NonlocalPoseMeans {
         for other in clips {
             check_length("joints of the library", joints, other.joints())?;
         }
-        // Where samples of the library are missing, those of the clip have confidences too.
+        // If samples of the library are missing, those of the clip need confidences too.
         let shared = confidence.is_some() || clips.iter().any(incomplete);
-        let trusting =
-            if shared && confidence.is_none() { vec![T::ONE; frames * joints] } else { Vec::new() };
-        let confidence = if shared { Some(confidence.unwrap_or(&trusting)) } else { None };
+        let certain = if shared && confidence.is_none() { vec![T::ONE; frames * joints] } else { Vec::new() };
+        let confidence = if shared { Some(confidence.unwrap_or(&certain)) } else { None };
         let library = match library {
             Some(clips) => Some(Library::new(self, clip, clips, shared, reach, &groups, interrupt)?),
             None => None,
@@ -219,16 +218,16 @@ impl NonlocalPoseMeans {
             .collect();
         let others: usize = clips.iter().map(ClipView::frames).sum();
         let work = frames * joints * (20 + 2 * (reach.back.min(frames) + reach.ahead.min(frames)) + others);
-        let spare: Mutex<Vec<Buffers<T>>> = Mutex::default();
+        let pool: Mutex<Vec<Buffers<T>>> = Mutex::default();
         let turned = parallel::map(tiles, work, |index, (out, moved_out)| {
             interrupt.check()?;
             let first = index * length;
-            let kept = spare.lock().map_or(None, |mut spare| spare.pop());
+            let kept = pool.lock().map_or(None, |mut pool| pool.pop());
             let mut buffers = kept.unwrap_or_default();
             let tile = Tile::new(&shared, first, (first + length).min(frames), &mut buffers);
             let turned = tile.filter(out, moved_out, &mut buffers, interrupt);
-            if let Ok(mut spare) = spare.lock() {
-                spare.push(buffers);
+            if let Ok(mut pool) = pool.lock() {
+                pool.push(buffers);
             }
             turned
         })?;
@@ -251,7 +250,7 @@ fn incomplete<T: Real>(clip: &ClipView<'_, T>) -> bool {
 
 /// Makes a clip sign-continuous from the hemisphere of `first`.
 ///
-/// Means of a continuous path are continuous as a rule; a clip that jumps by half turns may leave a flip.
+/// Means of a continuous path are usually continuous; a clip with jumps of 180° may leave a sign change.
 fn connect<T: Real>(first: &[T], out: &mut [T]) {
     let mut before = first.as_chunks::<4>().0.to_vec();
     let (samples, _) = out.as_chunks_mut::<4>();
@@ -265,7 +264,7 @@ fn connect<T: Real>(first: &[T], out: &mut [T]) {
     }
 }
 
-/// Chunks of a slice, or for ever empty ones.
+/// Chunks of a slice, or empty ones without end.
 fn chunks_or_empty<T>(slice: &mut [T], length: usize) -> Box<dyn Iterator<Item = &mut [T]> + '_> {
     if length == 0 {
         Box::new(std::iter::repeat_with(|| &mut [][..]))

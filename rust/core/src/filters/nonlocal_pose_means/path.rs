@@ -1,4 +1,4 @@
-//! The sign-continuous path of each joint over the extended clip, and the chart that holds it.
+//! The sign-continuous path of each joint over the extended clip, and its chart.
 
 use super::Chart;
 use crate::parallel::{self, Interrupt};
@@ -8,14 +8,14 @@ use crate::simd::multiversion;
 use crate::window::Extended;
 use crate::{ClipView, Error, Real};
 
-/// Cosine of the largest half angle from the mean that one chart holds: three quarters of a full turn of rotation. Near
-/// a full turn the chart stretches without bound.
+/// Cosine of the largest half angle from the mean within one chart: a rotation of 270°. Near 360° the chart is
+/// unbounded.
 const CHART_LIMIT: f64 = -std::f64::consts::FRAC_1_SQRT_2;
 
 /// Frames per task.
 const TASK_FRAMES: usize = 1024;
 
-/// How a joint's rotations become vectors.
+/// Chart of a joint's rotations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum JointChart<T> {
     /// Logarithm at a fixed rotation.
@@ -29,11 +29,11 @@ pub(super) enum JointChart<T> {
 pub(super) struct Paths<T> {
     /// The chart of each joint.
     pub(super) charts: Vec<JointChart<T>>,
-    /// 1 where the sample's sign is turned, `(extended frames, joints)`.
+    /// 1 where the sample's sign is changed, `(extended frames, joints)`.
     flips: Vec<u8>,
 }
 
-/// What a task learns of each joint, signs counted from the task's first frame.
+/// Cosines of each joint in a task, with signs relative to the task's first frame.
 #[derive(Debug, Clone, Copy)]
 struct Extent<T> {
     sum: T,
@@ -62,7 +62,7 @@ impl<T: Real> Paths<T> {
             Ok(follow(extended, task * TASK_FRAMES, flips, &centres, pad..pad + clip.frames()))
         })?;
 
-        // Signs counted from each task's first frame become signs counted from the first frame of all.
+        // Converts signs relative to each task's first frame to signs relative to the very first frame.
         let mut turned = vec![0_u8; joints];
         let mut sum = vec![0.0; joints];
         let mut least = vec![f64::INFINITY; joints];
@@ -89,7 +89,7 @@ impl<T: Real> Paths<T> {
             }
         }
 
-        // The whole path may still be turned: to the mean's hemisphere, or at the identity to `w ≥ 0` in the first frame.
+        // The sign of the whole path: towards the mean's hemisphere, or at the identity `w ≥ 0` in the first frame.
         let mut charts = Vec::with_capacity(joints);
         let mut whole = vec![0_u8; joints];
         for joint in 0..joints {
@@ -122,28 +122,29 @@ impl<T: Real> Paths<T> {
         Ok(Self { charts, flips })
     }
 
-    /// 1 where the path turns the sign of a sample, for frames in a range: `(frames, joints)`.
+    /// 1 where the path changes the sign of a sample, for a range of frames: `(frames, joints)`.
     pub(super) fn flips(&self, frames: std::ops::Range<usize>) -> &[u8] {
         let joints = self.charts.len();
         &self.flips[frames.start * joints..frames.end * joints]
     }
 
-    /// The sign by which the path turns a sample, as 1 or −1.
+    /// Sign of a sample in the path, 1 or −1.
     #[inline(always)]
     pub(super) fn sign(&self, frame: usize, joint: usize) -> T {
         if self.flips[frame * self.charts.len() + joint] == 0 { T::ONE } else { -T::ONE }
     }
 }
 
-/// Joints that are followed together: one vector of float32 at the widest level.
+/// Joints that are processed together: one vector of float32 at the widest level.
 const COLUMNS: usize = 16;
 
-/// Frames that are gone through column by column: their rows stay in the first-level cache.
+/// Frames that are processed column by column: their rows fit in the first-level cache.
 const CHUNK_FRAMES: usize = 16;
 
-/// Marks the flips of the rows of one task, and measures the cosine of the half angle to the centres along the path.
+/// Marks the sign changes in the rows of one task, and measures the cosine of the half angle to the centres along the
+/// path.
 ///
-/// The first row of a task is compared with the row before it, so that tasks can be chained. Sums are taken over `own`
+/// The first row of a task is compared with the row before it, so that tasks can be chained. Sums are over the `own`
 /// frames only.
 fn follow<T: Real>(
     extended: &Extended<'_, T>,
@@ -156,7 +157,7 @@ fn follow<T: Real>(
     let end = first + flips.len() / joints;
     let start = extended.row(first.saturating_sub(1));
     let width = COLUMNS.min(joints);
-    // The last columns overlap those before them rather than being fewer.
+    // The last columns overlap the previous ones, so that all groups have the same width.
     let columns: Vec<usize> = (0..joints).step_by(COLUMNS).map(|column| column.min(joints - width)).collect();
     let mut states: Vec<State<T>> = columns
         .iter()
@@ -186,7 +187,7 @@ fn follow<T: Real>(
         .collect()
 }
 
-/// What is known of some joints up to a frame.
+/// Path state of some joints at a frame.
 struct State<T> {
     centre: [[T; COLUMNS]; 4],
     before: [[T; COLUMNS]; 4],
@@ -209,7 +210,7 @@ impl<T: Real> State<T> {
     }
 }
 
-/// Up to [`COLUMNS`] quaternions as four rows of components.
+/// Up to [`COLUMNS`] quaternions, transposed to four rows of components.
 #[inline(always)]
 fn turned<T: Real>(samples: &[[T; 4]]) -> [[T; COLUMNS]; 4] {
     let mut row = [[T::ONE; 4]; COLUMNS];
@@ -225,7 +226,7 @@ fn turned<T: Real>(samples: &[[T; 4]]) -> [[T; COLUMNS]; 4] {
 }
 
 multiversion! {
-    /// Follows the joints `column..column + width` through rows of samples; `own` rows enter the sums.
+    /// Processes the joints `column..column + width` along rows of samples; `own` rows enter the sums.
     fn follow_columns<T: Real>(
         state: &mut State<T>,
         samples: &[[T; 4]],

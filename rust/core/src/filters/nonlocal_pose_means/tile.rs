@@ -1,9 +1,9 @@
-//! One tile of frames: from quaternions to planes, weights, means, and back to quaternions.
+//! One tile of frames: from quaternions to planes, weights and means, and back to quaternions.
 
 use super::candidates::Library;
 use super::kernels::{self, LANE};
-use super::likeness::Likeness;
 use super::means::Means;
+use super::patch_distance::PatchDistances;
 use super::path::{JointChart, Paths};
 use super::{NonlocalPoseMeans, Reach};
 use crate::clip::Planes;
@@ -15,16 +15,16 @@ use crate::window::{Boundary, Extended, extended_number};
 use crate::{Error, Real};
 use std::ops::Range;
 
-/// Bytes of planes that a tile should stay within: half of a common second-level cache.
+/// Target size of a tile's planes in bytes: half of a typical second-level cache.
 const TILE_BYTES: usize = 256 * 1024;
 
-/// Frames of a tile, at least and at most, where its surroundings do not ask for more.
+/// Least and largest number of frames of a tile, unless its surroundings require more.
 const TILE_FRAMES: Range<usize> = 128..2048;
 
-/// Lags that are weighed before their samples are added.
+/// Lags that are weighted before their samples are added.
 const BLOCK_LAGS: usize = 16;
 
-/// What all tiles share.
+/// Data shared by all tiles.
 #[derive(Debug)]
 pub(super) struct Clip<'a, T> {
     pub(super) filter: &'a NonlocalPoseMeans,
@@ -33,14 +33,14 @@ pub(super) struct Clip<'a, T> {
     pub(super) confidence: Option<&'a [T]>,
     pub(super) translation: Option<&'a [T]>,
     pub(super) library: Option<Library<T>>,
-    /// What its candidates are never nearer than, per group of joints; empty where nobody asks.
+    /// Lower bounds of the candidates' distances, per group of joints; empty if unused.
     pub(super) bounds: Vec<Bounds<T>>,
     pub(super) reach: Reach,
     pub(super) frames: usize,
 }
 
 impl<T: Real> Clip<'_, T> {
-    /// Frames per tile: what fits into the cache, but no less than twice the surroundings that are loaded with it.
+    /// Frames per tile: as many as fit in the cache, but at least twice the surroundings loaded with it.
     pub(super) fn tile_length(&self) -> usize {
         let row = self.extended.joints() * 4 * size_of::<T>();
         let fitting = (TILE_BYTES / row).clamp(TILE_FRAMES.start, TILE_FRAMES.end);
@@ -53,27 +53,27 @@ impl<T: Real> Clip<'_, T> {
     }
 }
 
-/// Pairs `(u, u + lag)` of frames, counted in planes, and what they serve.
+/// Pairs `(u, u + lag)` of frames, as indices of planes, and the frames of the tile that use them.
 #[derive(Debug)]
 pub(super) struct Piece {
     /// The earlier frames of the pairs.
     pub(super) pairs: Range<usize>,
-    /// Where the later frame is the candidate.
+    /// Frames of the tile for which the later frame is the candidate.
     pub(super) forward: Option<Side>,
-    /// Where the earlier frame is the candidate.
+    /// Frames of the tile for which the earlier frame is the candidate.
     pub(super) backward: Option<Side>,
 }
 
-/// Some pairs of a [`Piece`], and the frames of the tile that they serve.
+/// Some pairs of a [`Piece`], and the frames of the tile that they belong to.
 #[derive(Debug)]
 pub(super) struct Side {
-    /// Counted from the first pair.
+    /// Relative to the first pair.
     pub(super) pairs: Range<usize>,
-    /// Counted from the tile's first frame.
+    /// Relative to the tile's first frame.
     pub(super) frames: Range<usize>,
 }
 
-/// Memory that goes from tile to tile: fresh pages cost as much as the arithmetic.
+/// Scratch memory, reused from tile to tile: fresh pages cost as much as the arithmetic.
 #[derive(Debug, Default)]
 pub(super) struct Buffers<T> {
     planes: Planes<T>,
@@ -88,15 +88,15 @@ pub(super) struct Buffers<T> {
 #[derive(Debug)]
 pub(super) struct Tile<'a, T> {
     pub(super) clip: &'a Clip<'a, T>,
-    /// How many frames the tile has.
+    /// Number of frames of the tile.
     pub(super) frames: usize,
-    /// Where the tile's first frame stands in the planes.
+    /// Index of the tile's first frame in the planes.
     pub(super) at: usize,
-    /// Where candidates stand in the planes.
+    /// Indices of the candidates in the planes.
     pub(super) candidates: Range<usize>,
     /// Per joint: half rotation vectors (fixed chart) or unit quaternions (local chart).
     pub(super) planes: Planes<T>,
-    /// The first plane of each joint.
+    /// Index of the first plane of each joint.
     pub(super) rows: Vec<usize>,
     /// Confidence per joint.
     pub(super) confidence: Option<Planes<T>>,
@@ -105,7 +105,7 @@ pub(super) struct Tile<'a, T> {
 }
 
 impl<'a, T: Real> Tile<'a, T> {
-    /// Loads the frames `first..end` of the clip, with what the window around them reaches.
+    /// Loads the frames `first..end` of the clip with the surroundings that the window needs.
     pub(super) fn new(clip: &'a Clip<'a, T>, first: usize, end: usize, buffers: &mut Buffers<T>) -> Self {
         let Reach { back, ahead, before, after, pad, added } = clip.reach;
         let joints = clip.extended.joints();
@@ -118,7 +118,7 @@ impl<'a, T: Real> Tile<'a, T> {
             rows.push(count);
             count += if *chart == JointChart::Local { 4 } else { 3 };
         }
-        // The last lane of the tile may reach beyond what is loaded; its samples there are never used.
+        // The last lane of the tile may extend past the loaded frames; its samples there are never used.
         let mut planes = std::mem::take(&mut buffers.planes);
         planes.reshape(count, to - from + LANE);
         buffers.rows.resize(LANE * joints, [T::ZERO; 4]);
@@ -151,7 +151,7 @@ impl<'a, T: Real> Tile<'a, T> {
 
     /// Filters the tile into `out`, `(frames, joints, 4)`, and the translation into `moved`.
     ///
-    /// Returns whether the sign of a rotation turns from one frame to the next.
+    /// Returns whether the sign of a rotation changes from one frame to the next.
     pub(super) fn filter(
         self,
         out: &mut [T],
@@ -164,7 +164,9 @@ impl<'a, T: Real> Tile<'a, T> {
         for (index, group) in self.clip.filter.groups(joints).into_iter().enumerate() {
             means.begin(group.clone());
             match self.clip.filter.neighbors {
-                None => self.add_all(&mut Likeness::new(&self, group), &mut means, buffers, interrupt)?,
+                None => {
+                    self.add_all(&mut PatchDistances::new(&self, group), &mut means, buffers, interrupt)?
+                }
                 Some(count) => {
                     let scratch = &mut buffers.scratch;
                     self.add_nearest(count, index, group, &mut means, scratch, interrupt)?;
@@ -181,7 +183,7 @@ impl<'a, T: Real> Tile<'a, T> {
     /// Adds all candidates of the window, a block of lags at a time.
     fn add_all(
         &self,
-        likeness: &mut Likeness<'_, T>,
+        distances: &mut PatchDistances<'_, T>,
         means: &mut Means<'_, T>,
         buffers: &mut Buffers<T>,
         interrupt: &Interrupt,
@@ -198,7 +200,7 @@ impl<'a, T: Real> Tile<'a, T> {
                 forward.row_mut(l).fill(T::ZERO);
                 backward.row_mut(l).fill(T::ZERO);
                 for piece in self.pieces(first + l) {
-                    let weights = likeness.weights(first + l, piece.pairs.clone());
+                    let weights = distances.weights(first + l, piece.pairs.clone());
                     for (side, row) in
                         [(&piece.forward, forward.row_mut(l)), (&piece.backward, backward.row_mut(l))]
                     {
@@ -206,7 +208,7 @@ impl<'a, T: Real> Tile<'a, T> {
                             row[side.frames.clone()].copy_from_slice(&weights[side.pairs.clone()]);
                         }
                     }
-                    means.add_local(likeness, &piece, first + l);
+                    means.add_local(distances, &piece, first + l);
                 }
                 means.note(forward.row(l));
                 means.note(backward.row(l));
@@ -216,7 +218,7 @@ impl<'a, T: Real> Tile<'a, T> {
         Ok(())
     }
 
-    /// The pairs of one lag that matter to the tile, each computed once.
+    /// The pairs of one lag that the tile needs, each computed once.
     pub(super) fn pieces(&self, lag: usize) -> Vec<Piece> {
         let (at, end) = (self.at, self.at + self.frames);
         let Range { start: low, end: high } = self.candidates;
@@ -248,7 +250,7 @@ impl<'a, T: Real> Tile<'a, T> {
     }
 }
 
-/// Loads a block of rows, the first of which is the extended frame `frame`, into the planes from `at`.
+/// Loads a block of rows, which starts at the extended frame `frame`, into the planes from `at`.
 fn load<T: Real>(
     paths: &Paths<T>,
     planes: &mut Planes<T>,
@@ -259,7 +261,7 @@ fn load<T: Real>(
     buffer: &mut [[T; 4]],
 ) {
     let joints = rows.len();
-    // Rows are copied in order into a buffer that stays in the cache, and taken apart there.
+    // Rows are copied in order to a buffer that stays in the cache, and transposed there.
     for (chunk, samples) in samples.chunks(LANE * joints).enumerate() {
         let width = samples.len() / joints;
         let buffer = &mut buffer[..samples.len()];

@@ -1,4 +1,4 @@
-//! The bilateral filter of a stream: one window for each pass, each of which takes what the one before gives.
+//! The bilateral filter of a stream: one window per pass; each pass filters the result of the previous one.
 
 use super::ends::{Ends, Window};
 use super::pose::{Pose, Ring, plane, width};
@@ -8,14 +8,14 @@ use crate::rotations::quaternion::{angle_between, between, exp_one, log_short, p
 use crate::simd::multiversion;
 use crate::{Error, Real};
 
-/// Planes of a frame: its unit quaternions, and the half rotation vectors that lead to it from the frame before.
+/// Planes of a frame: its unit quaternions, and the half rotation vectors from the previous frame.
 const PLANES: usize = 7;
 
 impl Bilateral {
     /// The filter as a stream, over poses with a joint for each scale of angles.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a boundary that asks for later frames, and for too much memory.
+    /// [`Error::Parameter`] for a boundary that requires later frames, and for too much memory.
     pub fn stream(&self) -> Result<PoseStream, Error> {
         let joints = self.sigma_angle.len();
         let frames = self.radius.saturating_mul(2).saturating_add(1);
@@ -33,14 +33,14 @@ impl Bilateral {
     }
 }
 
-/// The passes one after the other.
+/// The passes in order.
 struct Passes {
     passes: Vec<Ends<Pass>>,
     between: [Pose; 2],
 }
 
 impl Passes {
-    /// Takes the pose that the pass before `first` gave, in `between[0]`, through the others.
+    /// Runs the result of the pass before `first`, in `between[0]`, through the remaining passes.
     fn pass_on(&mut self, first: usize, out: &mut Pose) -> bool {
         let [taken, given] = &mut self.between;
         for pass in &mut self.passes[first..] {
@@ -60,7 +60,7 @@ impl Causal for Passes {
     }
 
     fn appear(&mut self, joint: usize, q: [f64; 4]) {
-        // As long as a joint stands still, so does what each pass gives.
+        // A joint that has not moved is the same after each pass.
         for pass in &mut self.passes {
             pass.appear(joint, q);
         }
@@ -85,7 +85,7 @@ impl Causal for Passes {
 
 /// The latest frames of one pass.
 struct Pass {
-    /// Earlier frames of a window, and later ones.
+    /// Earlier and later frames of a window.
     back: usize,
     ahead: usize,
     squared: bool,
@@ -94,7 +94,7 @@ struct Pass {
     /// Factors of angles, or of their squares, per joint.
     factors: Vec<f64>,
     frames: Ring<PLANES>,
-    /// Half rotation vectors from the frame that is filtered to another.
+    /// Half rotation vectors from the filtered frame to another.
     reach: [Vec<f64>; 3],
     sums: [Vec<f64>; 3],
     total: Vec<f64>,
@@ -122,7 +122,7 @@ impl Pass {
         }
     }
 
-    /// Adds the weighted ways to the frames on one side of the one that is filtered.
+    /// Adds the weighted displacements to the frames on one side of the filtered frame.
     fn add_side(&mut self, later: bool) {
         let Self { frames, times, factors, reach, sums, total, squared, ahead, .. } = self;
         for plane in &mut *reach {
@@ -133,13 +133,13 @@ impl Pass {
         let lags = if later { *ahead } else { self.back };
         for (lag, &time) in (1..=lags).zip(&*times) {
             let there = frames.ago(if later { now - lag } else { now + lag });
-            // The step between the frames at `lag` and at `lag − 1` stands at the later of them.
+            // The increment between the frames at `lag` and `lag − 1` is stored at the later of them.
             let steps = if later { there } else { frames.ago(now + lag - 1) };
             let [p, q, r, s, ..] = there;
             let [.., x, y, z] = steps;
             let sign = if later { 1.0 } else { -1.0 };
             let side = Side { sign, time, factors, squared: *squared };
-            add_ways(
+            add_displacements(
                 [a, b, c, d],
                 [p, q, r, s],
                 [x, y, z],
@@ -152,7 +152,7 @@ impl Pass {
     }
 }
 
-/// How much the frames of one lag weigh.
+/// Weights of the frames of one lag.
 struct Side<'a, T> {
     /// 1 for later frames, −1 for earlier ones.
     sign: T,
@@ -203,7 +203,7 @@ impl Window for Pass {
 }
 
 multiversion! {
-    /// Half rotation vectors of the shorter way from `q` to `r`.
+    /// Half rotation vectors of the shorter rotation from `q` to `r`.
     fn steps<T: Real>(q: [&[T]; 4], r: [&[T]; 4], v: [&mut [T]; 3]) {
         let n = q[0].len();
         let (q, r) = (q.map(|q| &q[..n]), r.map(|r| &r[..n]));
@@ -218,8 +218,8 @@ multiversion! {
 }
 
 multiversion! {
-    /// Lengthens the ways from `q` by a step, which then lead to `r`, and adds them with their weights.
-    fn add_ways<T: Real>(
+    /// Extends the displacements from `q` by one increment, to `r`, and adds them with their weights.
+    fn add_displacements<T: Real>(
         q: [&[T]; 4], r: [&[T]; 4], step: [&[T]; 3], side: &Side<'_, T>,
         reach: [&mut [T]; 3], sums: [&mut [T]; 3], total: &mut [T],
     ) {

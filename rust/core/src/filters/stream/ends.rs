@@ -1,26 +1,26 @@
-//! Filters with a window in time, and what they see beyond the ends of the clip.
+//! Filters with a window in time, and their boundary conditions.
 
 use super::Causal;
 use super::pose::Pose;
 use crate::Error;
 use crate::window::{Boundary, continued};
 
-/// What one filter does with the latest frames.
+/// One filter's work on the latest frames.
 pub(super) trait Window: Send {
-    /// How many frames before and after a frame it sees.
+    /// Numbers of frames of the window before and after a frame.
     fn reach(&self) -> (usize, usize);
 
-    /// Takes a frame.
+    /// Adds a frame.
     fn admit(&mut self, pose: &Pose);
 
-    /// Filters the frame that now has all that it sees after it: the last but `reach().1`.
+    /// Filters the newest frame whose window is complete: `reach().1` frames before the last.
     fn settle(&mut self, out: &mut Pose);
 
-    /// Puts a joint in all frames at `q`.
+    /// Sets a joint to `q` in all frames.
     fn appear(&mut self, joint: usize, q: [f64; 4]);
 }
 
-/// A window that moves over a clip and over what continues it at either end.
+/// A window that moves over a clip and over its continuation at both ends.
 pub(super) struct Ends<W> {
     window: W,
     boundary: Boundary,
@@ -28,20 +28,20 @@ pub(super) struct Ends<W> {
     first: Pose,
     inner: Pose,
     last: Pose,
-    spare: Pose,
-    /// Whether the frames before the first were admitted.
+    scratch: Pose,
+    /// Whether the frames before the first have been added.
     begun: bool,
     taken: usize,
     given: usize,
-    /// How many frames after the last were admitted.
+    /// Number of frames added after the last.
     beyond: usize,
 }
 
 impl<W: Window> Ends<W> {
-    /// A window over poses of so many joints.
+    /// A window over poses of `joints` joints.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a condition that has to know more of the clip than there is when the first pose comes out.
+    /// [`Error::Parameter`] for a boundary condition that needs frames beyond the window of the first pose.
     pub(super) fn new(window: W, boundary: Boundary, joints: usize) -> Result<Self, Error> {
         let known = match boundary {
             Boundary::Nearest => true,
@@ -53,21 +53,32 @@ impl<W: Window> Ends<W> {
             return Err(Error::Parameter { name: "boundary", expected });
         }
         let pose = || Pose::new(joints);
-        let (first, inner, last, spare) = (pose(), pose(), pose(), pose());
-        Ok(Self { window, boundary, first, inner, last, spare, begun: false, taken: 0, given: 0, beyond: 0 })
+        let (first, inner, last, scratch) = (pose(), pose(), pose(), pose());
+        Ok(Self {
+            window,
+            boundary,
+            first,
+            inner,
+            last,
+            scratch,
+            begun: false,
+            taken: 0,
+            given: 0,
+            beyond: 0,
+        })
     }
 
-    /// Admits what lies before the first frame, as seen from the second, and the first frame.
+    /// Adds the frames before the first one, extrapolated from the first two, and the first frame.
     fn begin(&mut self, second: Option<&Pose>) {
         for steps in (1..=self.window.reach().0).rev() {
-            extend(self.boundary, &self.first, second, steps, &mut self.spare);
-            self.window.admit(&self.spare);
+            extend(self.boundary, &self.first, second, steps, &mut self.scratch);
+            self.window.admit(&self.scratch);
         }
         self.window.admit(&self.first);
         self.begun = true;
     }
 
-    /// Gives the next frame, if all that it sees was admitted.
+    /// Returns the next frame, if its window is complete.
     fn give(&mut self, out: &mut Pose) -> bool {
         let due = self.begun && self.taken + self.beyond > self.given + self.window.reach().1;
         if due {
@@ -118,14 +129,15 @@ impl<W: Window> Causal for Ends<W> {
         while !self.give(out) {
             self.beyond += 1;
             let inner = (self.taken > 1).then_some(&self.inner);
-            extend(self.boundary, &self.last, inner, self.beyond, &mut self.spare);
-            self.window.admit(&self.spare);
+            extend(self.boundary, &self.last, inner, self.beyond, &mut self.scratch);
+            self.window.admit(&self.scratch);
         }
         true
     }
 }
 
-/// Writes the pose `steps` frames beyond `end`, whose inner neighbour may be known. Confidences are held.
+/// Writes the pose `steps` frames beyond `end`; `inner` is the neighbour of `end`, if known. Confidences are
+/// repeated.
 fn extend(boundary: Boundary, end: &Pose, inner: Option<&Pose>, steps: usize, out: &mut Pose) {
     out.copy_from(end);
     if let (Boundary::Linear, Some(inner)) = (boundary, inner) {

@@ -1,4 +1,4 @@
-//! The Kalman filter of a stream, and its smoother from a few frames later.
+//! The Kalman filter of a stream, and its fixed-lag smoother.
 
 use super::pose::Pose;
 use super::{Causal, MOST_NUMBERS, PoseStream};
@@ -9,17 +9,17 @@ use crate::filters::kalman::rotations::{Forecasts, Later, Record, Variances, bac
 use crate::filters::lanes::{LANES, Lane, lanes, of_lane};
 use crate::rotations::quaternion::unit;
 
-/// Frames that are kept beyond those in use, so that they need to be moved together now and then only.
-const SPARE: usize = 32;
+/// Frames kept beyond those in use, so that they are moved only now and then.
+const MARGIN: usize = 32;
 
 impl Kalman {
-    /// The filter as a stream, over poses with a joint for each noise.
+    /// The filter as a stream, over poses with one joint per noise.
     ///
-    /// A joint comes out as it came in up to its first sample with confidence.
+    /// A joint is returned unchanged until its first sample with confidence.
     ///
     /// # Errors
-    /// [`Error::Length`] if there are not as many noises of either kind; [`Error::Parameter`] for a lookahead without an end,
-    /// and for too much memory.
+    /// [`Error::Length`] if the numbers of noises differ; [`Error::Parameter`] for an unlimited lookahead, and for
+    /// too much memory.
     pub fn stream(&self) -> Result<PoseStream, Error> {
         let joints = self.process_noise.len();
         check_length("measurement_noise", joints, self.measurement_noise.len())?;
@@ -39,16 +39,16 @@ impl Kalman {
     }
 }
 
-/// Eight joints.
+/// A group of eight joints.
 struct Group {
     variances: Variances,
     forecasts: Forecasts,
-    /// The states of the latest frames, at least of those that are still to come out; of those the smoothed rotations after
-    /// the end.
+    /// The states of the latest frames, at least of those not yet returned; after the end, the smoothed rotations of
+    /// these.
     records: Vec<Record>,
     /// The frames of the joints' first samples with confidence.
     begin: [Option<usize>; LANES],
-    /// As many as are to be smoothed, as they were before the end.
+    /// The records to be smoothed, as they were before the end.
     rest: Vec<Record>,
 }
 
@@ -57,13 +57,13 @@ impl Group {
         Self {
             variances,
             forecasts: Forecasts::default(),
-            records: Vec::with_capacity(2 * reach + SPARE),
+            records: Vec::with_capacity(2 * reach + MARGIN),
             begin: [None; LANES],
             rest: Vec::with_capacity(reach),
         }
     }
 
-    /// Takes the samples of the joints from `first`, of the frame `frame`.
+    /// Adds the samples of the joints from `first` on, of the frame `frame`.
     fn take(&mut self, pose: &Pose, first: usize, frame: usize, reach: usize) {
         if self.records.len() == self.records.capacity() {
             let old = self.records.len() - reach - 1;
@@ -74,9 +74,9 @@ impl Group {
         for (plane, joints) in record.rotation.iter_mut().zip(pose.rotations()) {
             plane.copy_from_slice(&joints[first..first + LANES]);
         }
-        record.trust.copy_from_slice(&pose.confidence()[first..first + LANES]);
-        for (begin, trust) in self.begin.iter_mut().zip(record.trust) {
-            if begin.is_none() && trust > 0.0 {
+        record.confidence.copy_from_slice(&pose.confidence()[first..first + LANES]);
+        for (begin, confidence) in self.begin.iter_mut().zip(record.confidence) {
+            if begin.is_none() && confidence > 0.0 {
                 *begin = Some(frame);
             }
         }
@@ -89,7 +89,7 @@ impl Group {
         }
     }
 
-    /// Writes the rotations of a frame, or its samples where a joint has not begun.
+    /// Writes the rotations of a frame; for joints before their first sample, the samples.
     fn write(&self, smooth: &[Lane; 4], samples: &Record, first: usize, frame: usize, out: &mut Pose) {
         for (lane, begin) in self.begin.iter().enumerate().take(out.joints() - first) {
             let begun = begin.is_some_and(|begin| begin <= frame);
@@ -113,7 +113,7 @@ impl Causal for Smoother {
         self.reach
     }
 
-    /// Nothing is known of a joint before its first sample.
+    /// The state of a joint starts at its first sample.
     fn appear(&mut self, _joint: usize, _q: [f64; 4]) {}
 
     fn push(&mut self, pose: &Pose, out: &mut Pose) -> bool {

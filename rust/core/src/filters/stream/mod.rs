@@ -1,13 +1,13 @@
-//! Streams: filters that take a clip pose by pose and give it back pose by pose, a fixed number of frames later.
+//! Streams: filters that receive a clip pose by pose and return it pose by pose, a fixed number of frames later.
 //!
-//! What comes out is what the filter of the whole clip makes of it, with the same window of earlier and later frames. A
-//! stream has state, allocates it when it is made, and does the same work for each pose on the calling thread: a pose is
-//! too little to share. It computes in float64 whatever the caller's dtype is.
+//! The result equals that of the filter of the whole clip with the same window of earlier and later frames. A stream
+//! has state, which it allocates when it is created. It processes each pose on the calling thread: a pose is too
+//! little work to share. It computes in float64 for every dtype.
 //!
-//! - here: what a live source does wrong, missing samples and signs, is settled before a filter sees a pose;
+//! - here: missing samples and signs of a live source are handled before the filter sees a pose;
 //! - `pose`: poses as planes over the joints, and rings of the latest ones;
-//! - `ends`: filters with a window, and what they see beyond the ends of the clip;
-//! - one file for each filter. A filter with a window implements `Window`; any other, `Causal`.
+//! - `ends`: filters with a window, and their boundary conditions;
+//! - one file for each filter. A filter with a window implements `Window`; any other implements `Causal`.
 
 mod bilateral;
 mod ends;
@@ -21,30 +21,30 @@ use crate::error::check_length;
 use crate::rotations::quaternion::{dot, is_missing, lower, negative, of_row, unit};
 use pose::Pose;
 
-/// Numbers that a stream may keep: 2 GiB. Of windows that ask for more, no pose would come in time.
+/// Largest number of values that a stream may keep: 2 GiB. Larger windows could not keep up with the source.
 const MOST_NUMBERS: usize = 1 << 28;
 
-/// A filter that takes poses one by one.
+/// A filter that processes poses one by one.
 ///
-/// The quaternions have length 1 and follow each other without a jump in sign, from the half of S³ on that holds the
-/// identity. A sample that is missing stands at the last one that was there, with confidence 0.
+/// The quaternions have length 1 and no sign jumps; the first is in the half of S³ that contains the identity. A
+/// missing sample repeats the last valid one, with confidence 0.
 trait Causal: Send {
-    /// How many frames later a pose comes out.
+    /// Number of frames between a pose and its result.
     fn latency(&self) -> usize;
 
-    /// Says where a joint is that was never there before: all earlier poses had it there, with confidence 0.
+    /// Sets a joint that had no valid sample so far: in all earlier poses it gets the value `q`, with confidence 0.
     ///
-    /// It is called before the pose that has the sample is pushed.
+    /// Called before the pose with the joint's first sample is pushed.
     fn appear(&mut self, joint: usize, q: [f64; 4]);
 
-    /// Takes the next pose. Returns whether one came out, into `out`: the one of `latency` frames ago.
+    /// Processes the next pose. Returns whether there is a result in `out`: the pose of `latency` frames ago.
     fn push(&mut self, pose: &Pose, out: &mut Pose) -> bool;
 
-    /// After the last pose: writes the next of those that are still to come out. Returns whether there was one.
+    /// After the last pose: writes the next pending result. Returns whether there was one.
     fn finish(&mut self, out: &mut Pose) -> bool;
 }
 
-/// A filter at work on a clip that is not over yet.
+/// A filter running on a clip that has not ended.
 pub struct PoseStream {
     filter: Box<dyn Causal>,
     joints: Vec<Joint>,
@@ -56,7 +56,7 @@ pub struct PoseStream {
     row: Vec<f64>,
 }
 
-/// What is known of a joint.
+/// State of a joint.
 #[derive(Debug, Clone, Copy, Default)]
 struct Joint {
     /// The frame of its first sample.
@@ -65,7 +65,7 @@ struct Joint {
     given: Sign,
 }
 
-/// Follows the sign of a path.
+/// Makes the sign of a path continuous.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sign {
     before: [f64; 4],
@@ -95,31 +95,33 @@ impl PoseStream {
         }
     }
 
-    /// How many joints a pose has.
+    /// Number of joints of a pose.
     #[must_use]
     pub fn joints(&self) -> usize {
         self.joints.len()
     }
 
-    /// How many frames later a pose comes out.
+    /// Number of frames between a pose and its result.
     #[must_use]
     pub fn latency(&self) -> usize {
         self.filter.latency()
     }
 
-    /// How many poses are still to come out.
+    /// Number of pending results.
     #[must_use]
     pub fn pending(&self) -> usize {
         self.taken - self.given
     }
 
-    /// Takes the next pose, `(joints, 4)`, and confidences, `(joints,)` in 0…1. Returns the pose of `latency` frames ago.
+    /// Processes the next pose, `(joints, 4)`, with confidences, `(joints,)` in 0…1. Returns the pose of `latency`
+    /// frames ago.
     ///
-    /// A joint that is missing holds its last sample, with confidence 0; before its first one NaN comes out. Quaternions
-    /// need not have length 1 exactly. Those that come out are continuous in sign from the hemisphere of the first sample.
+    /// A missing joint repeats its last sample, with confidence 0; before its first sample the result is NaN.
+    /// Quaternions need not have length 1 exactly. The results are continuous in sign from the hemisphere of the
+    /// first sample.
     ///
     /// # Errors
-    /// [`Error::Length`] if slices do not fit together; [`Error::Parameter`] after [`PoseStream::finish`].
+    /// [`Error::Length`] if the lengths of slices do not agree; [`Error::Parameter`] after [`PoseStream::finish`].
     pub fn push(&mut self, pose: &[f64], confidence: Option<&[f64]>) -> Result<Option<&[f64]>, Error> {
         check_length("pose", self.joints.len() * 4, pose.len())?;
         if let Some(confidence) = confidence {
@@ -131,7 +133,7 @@ impl PoseStream {
         for (index, (joint, q)) in self.joints.iter_mut().zip(pose.chunks_exact(4)).enumerate() {
             let q = of_row(q);
             if is_missing(q) {
-                self.pose.trust(index, 0.0);
+                self.pose.set_confidence(index, 0.0);
                 continue;
             }
             let q = unit(q);
@@ -142,21 +144,21 @@ impl PoseStream {
                 self.filter.appear(index, joint.taken.follow(q));
             }
             self.pose.set(index, joint.taken.follow(q));
-            self.pose.trust(index, confidence.map_or(1.0, |confidence| confidence[index]));
+            self.pose.set_confidence(index, confidence.map_or(1.0, |confidence| confidence[index]));
         }
         self.taken += 1;
         let came = self.filter.push(&self.pose, &mut self.out);
         Ok(came.then(|| self.give()))
     }
 
-    /// Returns the next of the poses that are still to come out, or `None` after the last. Ends the clip.
+    /// Ends the clip. Returns the next pending result, or `None` after the last.
     pub fn finish(&mut self) -> Option<&[f64]> {
         self.ended = true;
         let came = self.filter.finish(&mut self.out);
         came.then(|| self.give())
     }
 
-    /// The pose that came out, as a row.
+    /// The result as a row.
     fn give(&mut self) -> &[f64] {
         for (index, (joint, row)) in self.joints.iter_mut().zip(self.row.chunks_exact_mut(4)).enumerate() {
             let there = joint.since.is_some_and(|since| since <= self.given);
@@ -183,7 +185,7 @@ mod tests {
     const FRAMES: usize = 50;
     const JOINTS: usize = 3;
 
-    /// Joints that swing, with a tremor.
+    /// Oscillating joints with a tremor.
     fn clip() -> Vec<f64> {
         let sample = |i: usize| {
             let (frame, joint) = ((i / JOINTS) as f64, (i % JOINTS) as f64);

@@ -9,12 +9,12 @@ use crate::filters::one_euro::{Cutoffs, OneEuro, Record, State, forward};
 use crate::rotations::quaternion::unit;
 
 impl OneEuro {
-    /// The filter as a stream, over poses with a joint for each cutoff.
+    /// The filter as a stream, over poses with one joint per cutoff.
     ///
-    /// A joint comes out as it came in up to its first sample with confidence.
+    /// A joint is returned unchanged until its first sample with confidence.
     ///
     /// # Errors
-    /// [`Error::Length`] if there are not as many numbers of each kind.
+    /// [`Error::Length`] if the numbers of cutoffs and slopes differ.
     pub fn stream(&self) -> Result<PoseStream, Error> {
         let joints = self.min_cutoff.len();
         check_length("beta", joints, self.beta.len())?;
@@ -29,7 +29,7 @@ impl OneEuro {
     }
 }
 
-/// What the filter knows of each eight joints.
+/// State of the filter, per eight joints.
 struct Follower {
     groups: Vec<(Cutoffs, State)>,
 }
@@ -39,7 +39,7 @@ impl Causal for Follower {
         0
     }
 
-    /// Nothing is known of a joint before its first sample.
+    /// The state of a joint starts at its first sample.
     fn appear(&mut self, _joint: usize, _q: [f64; 4]) {}
 
     fn push(&mut self, pose: &Pose, out: &mut Pose) -> bool {
@@ -48,7 +48,7 @@ impl Causal for Follower {
             for (plane, joints) in record.rotation.iter_mut().zip(pose.rotations()) {
                 plane.copy_from_slice(&joints[first..first + LANES]);
             }
-            record.trust.copy_from_slice(&pose.confidence()[first..first + LANES]);
+            record.confidence.copy_from_slice(&pose.confidence()[first..first + LANES]);
             forward(std::slice::from_mut(&mut record), cutoffs, state);
             for lane in 0..LANES.min(out.joints() - first) {
                 out.set(first + lane, unit(of_lane(&record.rotation, lane)));

@@ -2,20 +2,21 @@
 
 use crate::clip::Planes;
 
-/// Planes are as long as a multiple of it: one vector of float64 at the widest level. Spare joints have confidence 0.
+/// Planes are padded to a multiple of this length: one vector of float64 at the widest level. Padding joints have
+/// confidence 0.
 const LANE: usize = 8;
 
-/// The length of planes that hold a number for each joint.
+/// Length of a plane with one value per joint.
 pub(super) fn width(joints: usize) -> usize {
     joints.next_multiple_of(LANE)
 }
 
-/// A number per joint as a plane; 0 for spare joints.
+/// One value per joint as a plane; 0 for padding joints.
 pub(super) fn plane(values: impl ExactSizeIterator<Item = f64>) -> Vec<f64> {
     let mut plane: Vec<f64> = Vec::with_capacity(width(values.len()));
-    let spare = width(values.len()) - values.len();
+    let padding = width(values.len()) - values.len();
     plane.extend(values);
-    plane.extend(std::iter::repeat_n(0.0, spare));
+    plane.extend(std::iter::repeat_n(0.0, padding));
     plane
 }
 
@@ -27,10 +28,10 @@ pub(super) struct Pose {
 }
 
 /// The plane of confidences, after the quaternions.
-const TRUST: usize = 4;
+const CONFIDENCE: usize = 4;
 
 impl Pose {
-    /// Identities without confidence.
+    /// Identities with confidence 0.
     pub(super) fn new(joints: usize) -> Self {
         let mut planes = Planes::new(5, width(joints));
         planes.row_mut(0).fill(1.0);
@@ -53,7 +54,7 @@ impl Pose {
 
     /// The confidences.
     pub(super) fn confidence(&self) -> &[f64] {
-        self.planes.row(TRUST)
+        self.planes.row(CONFIDENCE)
     }
 
     /// The quaternion of a joint.
@@ -69,13 +70,13 @@ impl Pose {
     }
 
     /// Sets the confidence of a joint.
-    pub(super) fn trust(&mut self, joint: usize, confidence: f64) {
-        self.planes.row_mut(TRUST)[joint] = confidence;
+    pub(super) fn set_confidence(&mut self, joint: usize, confidence: f64) {
+        self.planes.row_mut(CONFIDENCE)[joint] = confidence;
     }
 
-    /// Becomes equal to another pose.
+    /// Copies another pose.
     pub(super) fn copy_from(&mut self, other: &Self) {
-        for row in 0..=TRUST {
+        for row in 0..=CONFIDENCE {
             self.planes.row_mut(row).copy_from_slice(other.planes.row(row));
         }
     }
@@ -95,7 +96,7 @@ impl<const N: usize> Ring<N> {
         Self { planes: Planes::new(frames * N, length), frames, newest: 0 }
     }
 
-    /// Makes room for a frame in place of the oldest, and returns its planes.
+    /// Replaces the oldest frame, and returns the planes of the new one.
     pub(super) fn advance(&mut self) -> [&mut [f64]; N] {
         self.newest = (self.newest + 1) % self.frames;
         self.newest_mut()
@@ -111,7 +112,7 @@ impl<const N: usize> Ring<N> {
         self.planes.rows_from::<N>((self.newest + self.frames - ago) % self.frames * N)
     }
 
-    /// Sets one place of some planes in all frames.
+    /// Sets one element of some planes in all frames.
     pub(super) fn fill<const M: usize>(&mut self, first: usize, place: usize, values: [f64; M]) {
         for frame in 0..self.frames {
             for (plane, value) in self.planes.rows_mut::<M>(frame * N + first).into_iter().zip(values) {

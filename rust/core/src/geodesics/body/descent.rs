@@ -8,45 +8,45 @@ use crate::parallel::Interrupt;
 use crate::rotations::quaternion::{is_missing, log_one};
 use std::collections::VecDeque;
 
-/// Steps at most; whole bodies take 15 to 40 from the tangent axis.
+/// Largest number of steps; whole bodies take 15 to 40 from the tangent axis.
 pub(super) const STEPS: usize = 200;
 
-/// Pairs of steps and changes of gradient that stand for the curvature.
+/// Number of pairs of steps and gradient changes that approximate the curvature.
 const MEMORY: usize = 20;
 
-/// Shortenings of a step at most.
+/// Largest number of times that a step is shortened.
 const HALVINGS: usize = 30;
 
-/// Radians on the sphere of directions: a step that ends the descent.
+/// Step length, radians on the sphere of directions, at which the descent ends.
 const SHORTEST: f64 = 1e-12;
 
-/// Radians: a longer step has left the neighbourhood that the curvature speaks of.
+/// Longest step, radians: farther away the curvature is not valid.
 const LONGEST: f64 = 0.5;
 
-/// Radians: the first step, before any curvature is known.
+/// First step, radians, before any curvature is known.
 const FIRST_STEP: f64 = 0.05;
 
-/// Share of the decrease that the slope promises, from which a step is taken (Armijo).
+/// Fraction of the decrease predicted by the slope that a step must reach (Armijo).
 const DECREASE: f64 = 1e-4;
 
-/// Relative: a difference of objectives that roundings make; such a step is taken if it halves the gradient.
+/// Relative difference of objectives attributed to rounding; a step within it is accepted if it halves the gradient.
 const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
 
-/// A direction, and the objectives on the way to it.
+/// A direction, and the objectives at the steps that led to it.
 #[derive(Debug, Clone)]
 pub(super) struct Found {
     pub(super) direction: Vec<f64>,
     pub(super) descent: Vec<f64>,
 }
 
-/// A step, and how the gradient changed.
+/// A step, and the change of the gradient.
 struct Pair {
     step: Vec<f64>,
     change: Vec<f64>,
     product: f64,
 }
 
-/// What is gone down.
+/// The objective function of the descent.
 #[derive(Clone, Copy)]
 pub(super) struct Ground<'a> {
     pub(super) poses: &'a Poses,
@@ -57,20 +57,20 @@ pub(super) struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    /// The objective at a direction; `s` is where the search for the nearest points begins.
+    /// The objective at a direction; `s` holds the start values for the nearest points.
     pub(super) fn slope(&self, v: &[f64], s: &mut [Lane]) -> Result<Slope, Error> {
         slope(self.poses, v, self.which, self.objective, s, self.interrupt)
     }
 
-    /// Parameters 0.
+    /// Zero parameters for all poses.
     pub(super) fn at_one(&self) -> Vec<Lane> {
         vec![Lane::ZERO; self.poses.tiles.len()]
     }
 
-    /// Descends from a direction to a minimum near it; the objective never rises.
+    /// Descends from a direction to a local minimum; the objective never increases.
     ///
-    /// Where the mean distance has its minimum at a cone point, the direction of a pose, the descent ends near it, and steps
-    /// onto it in the end if that is lower.
+    /// The mean distance may have its minimum at a cone point, the direction of a pose. Then the descent ends near
+    /// it, and finally steps onto it if the objective is lower there.
     pub(super) fn descent(&self, start: &[f64], steps: usize) -> Result<Found, Error> {
         let (mut found, nearest) = self.descent_off_poses(start, steps)?;
         let low = found.descent.last().copied().unwrap_or(f64::INFINITY);
@@ -122,7 +122,8 @@ impl Ground<'_> {
         Ok((Found { direction: v, descent }, here.nearest))
     }
 
-    /// The share of a step that lowers the objective enough, where it leads, and the objective there.
+    /// The fraction of a step that lowers the objective enough, the direction that it leads to, and the objective
+    /// there.
     fn search(
         &self,
         v: &[f64],
@@ -137,14 +138,14 @@ impl Ground<'_> {
             if length.is_nan() || length * share < SHORTEST {
                 break;
             }
-            let trial = turned(v, step, share, length);
+            let trial = moved_along(v, step, share, length);
             let there = self.slope(&trial, s)?;
             let enough = there.value <= here.value + DECREASE * share * promised;
             let level = there.value <= here.value * (1.0 + ROUNDINGS);
             if enough || (level && norm(&there.gradient) < steep / 2.0) {
                 return Ok(Some((share, trial, there)));
             }
-            // The minimum of the parabola through both values and the slope, but no further than it can be trusted.
+            // The minimum of the parabola through both values and the slope, limited to its range of validity.
             let excess = 2.0 * (there.value - here.value - share * promised);
             let parabola = if excess > 0.0 { -promised * share * share / excess } else { share / 2.0 };
             share = parabola.max(share / 10.0).min(share / 2.0);
@@ -152,7 +153,7 @@ impl Ground<'_> {
         Ok(None)
     }
 
-    /// Direction to a pose.
+    /// Direction of a pose.
     fn pose_direction(&self, pose: usize) -> Vec<f64> {
         let mut v = Vec::with_capacity(self.which.len() * 3);
         for &joint in self.which {
@@ -165,7 +166,7 @@ impl Ground<'_> {
     }
 }
 
-/// Step of Newton's with the curvature that the pairs know (Nocedal's two loops).
+/// Quasi-Newton step with the curvature of the pairs (Nocedal's two-loop recursion).
 fn newton_like(gradient: &[f64], pairs: &VecDeque<Pair>, v: &[f64]) -> Vec<f64> {
     let mut step: Vec<f64> = gradient.iter().map(|x| -x).collect();
     let mut shares = Vec::with_capacity(pairs.len());
@@ -188,8 +189,8 @@ fn newton_like(gradient: &[f64], pairs: &VecDeque<Pair>, v: &[f64]) -> Vec<f64> 
     step
 }
 
-/// Moves the unit vector `v` along the sphere by a share of a vector across it, of the given length.
-fn turned(v: &[f64], step: &[f64], share: f64, length: f64) -> Vec<f64> {
+/// Moves the unit vector `v` along the sphere by a fraction of an orthogonal vector of the given length.
+fn moved_along(v: &[f64], step: &[f64], share: f64, length: f64) -> Vec<f64> {
     let (sin, cos) = crate::Real::sin_cos(length * share);
     let along = if length > 0.0 { sin / length } else { 0.0 };
     let mut moved: Vec<f64> = v.iter().zip(step).map(|(v, step)| cos * v + along * step).collect();

@@ -1,22 +1,22 @@
-//! How far poses lie from points of a geodesic of the product of all joints.
+//! Distances of poses from points of a geodesic in the product of all joints.
 //!
-//! The geodesic with the direction `v` is `c_v(s) = (exp(s v_1), …, exp(s v_J))`. A joint whose part `v_j = n e` has the length
-//! `n` turns by `θ = n s`. Seen from there, its sample `x = (w, u)` has the scalar part `a = w cos θ + p sin θ`, `p = e·u`, the
-//! part `b = p cos θ − w sin θ` along `e`, and `r = |u − p e|` across it. The distance is `d = atan2(√(b² + r²), |a|)`. With
-//! `φ = d / sin d` the square `h = d²` has
+//! The geodesic with the direction `v` is `c_v(s) = (exp(s v_1), …, exp(s v_J))`. A joint whose part `v_j = n e` has
+//! the length `n` rotates by `θ = n s`. Relative to that point, its sample `x = (w, u)` has the scalar part `a = w
+//! cos θ + p sin θ`, `p = e·u`, the component `b = p cos θ − w sin θ` along `e`, and `r = |u − p e|` orthogonal to
+//! it. The distance is `d = atan2(√(b² + r²), |a|)`. With `φ = d / sin d` the square `h = d²` has
 //!
 //! ```text
 //! dh/dθ = −2 φ b sign a,    d²h/dθ² / 2 = D + (1 − D) φ |a|,    D = b² / sin² d.
 //! ```
 //!
-//! The squared chord `h = 2 (1 − |a|)` has `φ = 1` and `d²h/dθ² / 2 = |a|`. A missing sample is four zeros, which make all of
-//! this 0.
+//! The squared chord `h = 2 (1 − |a|)` has `φ = 1` and `d²h/dθ² / 2 = |a|`. A missing sample is stored as four zeros,
+//! for which all of these are 0.
 
 use super::poses::{Lane, Part, TILE, Tile};
 use crate::Real;
 use crate::simd::multiversion;
 
-/// A sample as seen from a point of a geodesic.
+/// A sample relative to a point of a geodesic.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct View {
     /// `h`.
@@ -42,10 +42,10 @@ pub(super) struct Sums {
     pub(super) bend: Lane,
 }
 
-/// What the gradient takes from a joint's view: `φ sign a`, `b`, `sin θ / θ`.
+/// Values of a joint that the gradient needs: `φ sign a`, `b`, `sin θ / θ`.
 pub(super) type Kept = [Lane; 3];
 
-/// Sees a sample from a point; with a `sign`, as if `a` had it.
+/// A sample relative to a point; `sign` overrides the sign of `a`.
 #[inline(always)]
 pub(super) fn view<const CHORDAL: bool>(x: [f64; 4], part: Part, s: f64, sign: Option<f64>) -> View {
     let theta = s * part.length;
@@ -71,7 +71,7 @@ pub(super) fn view<const CHORDAL: bool>(x: [f64; 4], part: Part, s: f64, sign: O
 }
 
 multiversion! {
-    /// Pulls and bends at `s` as if no joint had a kink: where each `a` is above 0.
+    /// Adds pulls and bends at `s` as if no joint had a kink: as if each `a` were above 0.
     pub(super) fn add_views(tile: &Tile, v: &[Part], s: &Lane, chordal: bool, sums: &mut Sums) {
         if chordal {
             add::<true>(tile, v, s, sums);
@@ -94,7 +94,7 @@ fn add<const CHORDAL: bool>(tile: &Tile, v: &[Part], s: &Lane, sums: &mut Sums) 
 }
 
 multiversion! {
-    /// Squares and pulls at `s`, and what the gradient needs.
+    /// Squares and pulls at `s`, and the values that the gradient needs.
     pub(super) fn keep_views(
         tile: &Tile,
         v: &[Part],

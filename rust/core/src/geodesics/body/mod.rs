@@ -1,9 +1,9 @@
 //! Principal geodesic analysis of whole poses: geodesics of the product of all joints' rotations.
 //!
 //! The distance of two poses is `√(Σ_j d_j²)`. The geodesic with the direction `v`, a unit vector of `R^{3J}`, is
-//! `c_v(s) = (exp(s v_1), …, exp(s v_J))`, up to where its fastest joint has turned by half a turn: beyond, it would wind
-//! through all poses. The first direction is the one whose geodesic lies nearest to the poses, seen from the means; the next
-//! is fitted to what it leaves, `c_v(s)⁻¹ x` joint by joint, and so on.
+//! `c_v(s) = (exp(s v_1), …, exp(s v_J))`. It ends where its fastest joint has rotated by 180°: a longer one would
+//! pass near all poses. The first direction minimises the distance of the geodesic through the means to the poses.
+//! The next is fitted to the residuals `c_v(s)⁻¹ x`, joint by joint, and so on.
 
 mod descent;
 mod distance;
@@ -25,29 +25,30 @@ use objective::SAMPLE_NANOSECONDS;
 use poses::{Lane, Poses, TILE, Tile, parts, take_away};
 use projection::nearest_points;
 
-/// Radians on S³: residuals that are all nearer to 1 are roundings, and have no direction.
+/// Radians on S³: if all residuals are smaller, they are rounding errors and have no direction.
 const NOTHING_LEFT: f64 = 1e-14;
 
-/// Share of the greatest parameter from which a pose may decide about the sign of a direction. No share that evenly spaced
-/// poses of a swing have exactly, for then roundings would decide.
+/// A pose determines the sign of a direction if its parameter exceeds this fraction of the largest. Evenly spaced
+/// poses of a swing never have exactly this fraction, so rounding does not decide.
 const DECISIVE: f64 = 0.7;
 
 /// A geodesic of whole poses.
 #[derive(Debug, Clone)]
 pub struct Component {
-    /// Unit vector, three numbers for each joint. The first pose whose parameter is at least 0.7 of the greatest has a positive
-    /// one.
+    /// Unit vector, three numbers for each joint. The first pose whose parameter is at least 0.7 of the largest has a
+    /// positive one.
     pub direction: Vec<f64>,
-    /// Mean distance, as an angle of rotation, that it and the ones before leave; NaN without poses.
+    /// Mean distance, as a rotation angle, of the poses from the subspace of this and all previous geodesics; NaN
+    /// without poses.
     pub residual: f64,
-    /// The objective, of distances on S³, on the way to the direction; it never rises.
+    /// The objective, of distances on S³, at the steps of the descent; it never increases.
     pub descent: Vec<f64>,
 }
 
 /// Principal geodesics of whole poses through `means`, `(joints, 4)`.
 ///
 /// # Errors
-/// [`Error::Length`] if the means do not fit; [`Error::Interrupted`].
+/// [`Error::Length`] if the number of means is not that of the joints; [`Error::Interrupted`].
 pub fn body_geodesics<T: Real>(
     clip: ClipView<'_, T>,
     means: &[T],
@@ -78,22 +79,21 @@ pub fn body_geodesics<T: Real>(
     Ok(components)
 }
 
-/// Means as float64.
+/// Means in float64.
 fn wide_means<T: Real>(means: &[T], joints: usize) -> Result<Vec<[f64; 4]>, Error> {
     check_length("means", joints * 4, means.len())?;
     let (means, _) = means.as_chunks::<4>();
     Ok(means.iter().map(|mean| mean.map(T::to_f64)).collect())
 }
 
-/// Frames with at least one sample.
+/// Frames with at least one valid sample.
 fn frames_with_samples<T: Real>(clip: ClipView<'_, T>) -> Vec<usize> {
     let seen = |frame: &usize| (0..clip.joints()).any(|joint| !is_missing(clip.at(*frame, joint)));
     (0..clip.frames()).filter(seen).collect()
 }
 
-/// Direction of the geodesic that is nearest to the poses; `before` is the last one.
-///
-/// Joints that rest have no part in it. Where a single joint moves, its own nearest geodesic is the body's.
+/// Direction of the geodesic nearest to the poses; `before` is the previous direction.
+/// Joints that do not move have zero components. If a single joint moves, its own nearest geodesic is the body's.
 fn next_direction(
     poses: &Poses,
     before: Option<&[f64]>,
@@ -121,7 +121,7 @@ fn next_direction(
     Ok(Found { direction, descent: found.descent })
 }
 
-/// The nearest geodesic where a single joint moves.
+/// The nearest geodesic if a single joint moves.
 fn of_joint(
     poses: &Poses,
     joint: usize,
@@ -143,8 +143,8 @@ fn of_joint(
     Ok((v, descent))
 }
 
-/// Mean distance of the poses from a geodesic, as an angle of rotation, and the parameters of the nearest points; with
-/// `remove`, the poses become what it leaves.
+/// Mean distance of the poses from a geodesic, as a rotation angle, and the parameters of the nearest points. With
+/// `remove`, the poses are replaced by their residuals.
 fn mean_distance(
     poses: &mut Poses,
     v: &[f64],
@@ -167,12 +167,12 @@ fn mean_distance(
     Ok((2.0 * total / poses.count as f64, parts.into_iter().map(|(_, s)| s).collect()))
 }
 
-/// Whether the first pose whose parameter is great enough has a negative one; those beyond the last pose are 0.
+/// Whether the first pose whose parameter is large enough has a negative one; padding poses have 0.
 fn decides_against(s: &[Lane]) -> bool {
     let all = || s.iter().flat_map(|lane| lane.0);
     let most = all().fold(0.0, |most, s| f64::max(most, s.abs()));
     all().find(|s| s.abs() >= DECISIVE * most).is_some_and(f64::is_sign_negative)
 }
 
-/// Frames per task of what goes from clip to clip.
+/// Frames per task of passes over whole clips.
 const TASK: usize = 4 * TILE;

@@ -1,4 +1,4 @@
-//! The direction of the nearest geodesic of poses, from several starts.
+//! Direction of the geodesic nearest to the poses, from several starts.
 
 use super::descent::{Found, Ground, STEPS, norm};
 use super::poses::{Lane, Poses, TILE, Tile, logarithms};
@@ -7,25 +7,27 @@ use crate::eigen::eigenvectors;
 use crate::parallel::{self, Interrupt};
 use crate::simd::multiversion;
 
-/// Poses, at most, on which the starts descend: enough to tell valleys apart.
+/// Largest number of poses on which the starts descend: enough to distinguish local minima.
 const SUBSET: usize = 512;
 
-/// Steps on the subset at most: what is left is done on all poses.
+/// Largest number of steps on the subset; the final descent runs on all poses.
 const SUBSET_STEPS: usize = 60;
 
-/// Relative: a start that is not better by more is as good as the one before, and roundings do not choose between them.
+/// Relative improvement below which a start counts as equally good: the first one is kept, and rounding does not
+/// decide.
 const LOWER: f64 = 1e-12;
 
-/// Starts of each kind: one alone missed the lowest valley in one fit of nine on recordings.
+/// Starts of each kind: a single one missed the lowest minimum in one fit of nine on recordings.
 const AXES: usize = 3;
 
-/// Sums side by side: one vector of float64 at the widest level.
+/// Number of running sums: one vector of float64 at the widest level.
 const LANES: usize = 8;
 
-/// Direction with the lowest objective that was found.
+/// Direction with the lowest objective found.
 ///
-/// The starts descend on a subset of the poses; from the best of where they come out, or from the tangent principal axis
-/// itself if that is better, the descent goes on over all poses. So no tangent principal axis is better than the result.
+/// The starts descend on a subset of the poses. The final descent over all poses begins at the best of their results,
+/// or at the tangent principal axis itself if that is better. So the result is never worse than a tangent principal
+/// axis.
 pub(super) fn nearest_geodesic(ground: Ground<'_>) -> Result<Found, Error> {
     let subset = ground.poses.subset(SUBSET);
     let Ground { which, interrupt, .. } = ground;
@@ -47,8 +49,8 @@ pub(super) fn nearest_geodesic(ground: Ground<'_>) -> Result<Found, Error> {
     ground.descent(best.0, STEPS)
 }
 
-/// The first eigenvectors of `Σ y yᵀ` for the logarithms `y` of the poses, or with `alike` of `Σ y yᵀ/|y|²`, where all poses
-/// count alike.
+/// The first eigenvectors of `Σ y yᵀ` for the logarithms `y` of the poses; with `alike`, of `Σ y yᵀ/|y|²`, which
+/// gives all poses the same weight.
 fn axes(
     poses: &Poses,
     which: &[usize],
@@ -89,7 +91,7 @@ fn axes(
     Ok(order.iter().take(count).map(column).collect())
 }
 
-/// Makes each pose's vector one of length 1; 0 stays 0.
+/// Normalises each pose's vector; 0 stays 0.
 fn scale_to_one(rows: &mut [Lane]) {
     for i in 0..TILE {
         let square: f64 = rows.iter().map(|row| row.0[i] * row.0[i]).sum();
@@ -101,7 +103,7 @@ fn scale_to_one(rows: &mut [Lane]) {
 }
 
 multiversion! {
-    /// Products of all pairs of rows, as a symmetric matrix.
+    /// Inner products of all pairs of rows, as a symmetric matrix.
     fn add_products(rows: &[Lane], products: &mut [f64]) {
         let n = rows.len();
         for a in 0..n {

@@ -1,4 +1,4 @@
-//! What the direction of a geodesic of poses minimises, and its gradient.
+//! The objective of a geodesic's direction, and its gradient.
 
 use super::poses::{Lane, Part, Poses, TILE, Tile, parts};
 use super::projection::{Nearest, furthest, nearest_points};
@@ -7,40 +7,41 @@ use crate::geodesics::pga::Objective;
 use crate::parallel::{self, Interrupt};
 use crate::simd::multiversion;
 
-/// Distance on S³: poses that are nearer lie on the geodesic; in which direction from it is lost in roundings.
+/// Distance on S³ below which a pose lies on the geodesic: its direction from the geodesic is lost in rounding
+/// errors.
 const ON_GEODESIC: f64 = 1e-14;
 
-/// Sums side by side: one vector of float64 at the widest level.
+/// Number of running sums: one vector of float64 at the widest level.
 const LANES: usize = 8;
 
-/// Estimated nanoseconds for the nearest point, per sample.
+/// Estimated nanoseconds per sample for the nearest point.
 pub(super) const SAMPLE_NANOSECONDS: usize = 20;
 
 /// An objective at a direction.
 #[derive(Debug, Clone)]
 pub(super) struct Slope {
     pub(super) value: f64,
-    /// Across the direction.
+    /// Gradient, orthogonal to the direction.
     pub(super) gradient: Vec<f64>,
-    /// The pose whose direction is nearest to that of the geodesic, seen from 1.
+    /// The pose whose direction is nearest to that of the geodesic.
     pub(super) nearest: Option<usize>,
 }
 
-/// What a tile adds to an objective.
+/// Contribution of a tile to the objective.
 struct Share {
     value: f64,
     /// For each joint `Σ f b` and `Σ f sinc θ (u − p e)`, with `f = (weight) s φ sign a`.
     sums: Vec<[f64; 4]>,
     limit: f64,
-    /// The angle to the nearest pose's direction, and which it is in the tile.
+    /// The angle to the nearest pose's direction, and the index of that pose in the tile.
     nearest: (f64, usize),
 }
 
-/// Objective at the unit vector `v`, three numbers for each joint that `which` names, with its gradient on the sphere.
+/// Objective at the unit vector `v`, with three components for each joint in `which`, and its gradient on the sphere.
 ///
-/// Since each `s` is the nearest there is, its own change counts nothing, and the gradient is the one at fixed `s`. Poses
-/// whose `s` is held by its limit `π / (2 max n_j)` move with that limit. `s` has one lane per tile: where the search
-/// begins, and in the end the nearest points.
+/// Each `s` is optimal, so its own change does not contribute and the gradient is the one at fixed `s`. Poses whose
+/// `s` is at its limit `π / (2 max n_j)` move with that limit. `s` has one lane per tile: the start values on entry,
+/// the nearest points on return.
 pub(super) fn slope(
     poses: &Poses,
     v: &[f64],
@@ -87,7 +88,7 @@ pub(super) fn slope(
     Ok(Slope { value: value / count, gradient, nearest: nearest.1 })
 }
 
-/// Takes from a vector its part along the unit vector `v`.
+/// Removes from a vector its component along the unit vector `v`.
 pub(super) fn remove_along(vector: &mut [f64], v: &[f64]) {
     let along: f64 = vector.iter().zip(v).map(|(a, b)| a * b).sum();
     for (x, v) in vector.iter_mut().zip(v) {

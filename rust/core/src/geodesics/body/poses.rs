@@ -1,14 +1,14 @@
-//! Poses as lanes: planes of 64 poses for each joint, that every pass goes through.
+//! Poses as lanes: planes of 64 poses per joint, read by every pass.
 
 use crate::parallel::{self, Interrupt};
 use crate::rotations::quaternion::{between, is_missing, product, unit};
 use crate::simd::multiversion;
 use crate::{ClipView, Error, Real};
 
-/// Poses side by side: the planes of a body stay in the second-level cache while they are gone through several times.
+/// Poses per tile: the planes of a body fit in the second-level cache for several passes.
 pub(super) const TILE: usize = 64;
 
-/// A number for each pose of a tile, aligned to a cache line.
+/// One value per pose of a tile, aligned to a cache line.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
 pub(super) struct Lane(pub(super) [f64; TILE]);
@@ -17,10 +17,10 @@ impl Lane {
     pub(super) const ZERO: Self = Self([0.0; TILE]);
 }
 
-/// Samples of 64 poses: `w`, `x`, `y`, `z` for each joint. Four zeros where a sample is missing, and beyond the last pose.
+/// Samples of 64 poses: `w`, `x`, `y`, `z` for each joint. Missing samples and padding are four zeros.
 pub(super) type Tile = Vec<[Lane; 4]>;
 
-/// Poses seen from their centre, with `w ≥ 0`.
+/// Poses relative to their centre, with `w ≥ 0`.
 #[derive(Debug)]
 pub(super) struct Poses {
     pub(super) tiles: Vec<Tile>,
@@ -28,17 +28,17 @@ pub(super) struct Poses {
     pub(super) joints: usize,
 }
 
-/// What a direction `v` means for one joint.
+/// Part of a direction `v` for one joint.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Part {
     pub(super) joint: usize,
-    /// Unit vector; 0 where the joint rests.
+    /// Unit vector; 0 if the joint does not move.
     pub(super) axis: [f64; 3],
     /// Length of the joint's part of the direction.
     pub(super) length: f64,
 }
 
-/// Parts of a direction, three numbers for each of the joints that `which` names.
+/// Parts of a direction, three components for each joint in `which`.
 pub(super) fn parts(v: &[f64], which: &[usize]) -> Vec<Part> {
     let (v, _) = v.as_chunks::<3>();
     let part = |(&joint, v): (&usize, &[f64; 3])| {
@@ -50,7 +50,7 @@ pub(super) fn parts(v: &[f64], which: &[usize]) -> Vec<Part> {
 }
 
 impl Poses {
-    /// The given frames of a clip, seen from the means.
+    /// The given frames of a clip, relative to the means.
     pub(super) fn of_frames<T: Real>(
         clip: ClipView<'_, T>,
         frames: &[usize],
@@ -74,7 +74,7 @@ impl Poses {
         Ok(Self { tiles, count: frames.len(), joints })
     }
 
-    /// About so many of the poses at most, evenly spread.
+    /// At most about `most` of the poses, evenly spaced.
     pub(super) fn subset(&self, most: usize) -> Self {
         let stride = self.count.div_ceil(most).max(1);
         let chosen: Vec<usize> = (0..self.count).step_by(stride).collect();
@@ -95,7 +95,7 @@ impl Poses {
         sample(&self.tiles[pose / TILE][joint], pose % TILE)
     }
 
-    /// The joints that are not all the time nearer to 1 than `threshold`.
+    /// The joints that are farther than `threshold` from 1 in at least one pose.
     pub(super) fn moving(&self, threshold: f64, interrupt: &Interrupt) -> Result<Vec<usize>, Error> {
         let most = parallel::map(self.tiles.iter().collect(), self.count * self.joints, |_, tile: &Tile| {
             interrupt.check()?;
@@ -129,7 +129,7 @@ fn upper(q: [f64; 4]) -> [f64; 4] {
 }
 
 multiversion! {
-    /// Leaves what the points `c_v(s)` leave of the samples, `c_v(s)⁻¹ x` with `w ≥ 0`; zeros stay zeros.
+    /// Replaces the samples by their residuals at the points `c_v(s)`: `c_v(s)⁻¹ x` with `w ≥ 0`; zeros stay zeros.
     pub(super) fn take_away(tile: &mut [[Lane; 4]], v: &[Part], s: &Lane) {
         for part in v {
             let [w, x, y, z] = &mut tile[part.joint];
@@ -149,7 +149,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Goes on from rotations along a geodesic, `q ← q · c_v(s)`, for the part of one joint.
+    /// Moves rotations along a geodesic, `q ← q · c_v(s)`, for the part of one joint.
     pub(super) fn go_on(q: &mut [Lane; 4], part: Part, s: &Lane) {
         let [w, x, y, z] = q;
         for i in 0..TILE {

@@ -1,9 +1,9 @@
-//! The nearest point of a geodesic to a pose, exactly.
+//! Exact nearest point of a geodesic to a pose.
 //!
-//! `g(s) = Σ_j h_j(n_j s)` is a sum over the joints, each convex up to a kink, where that joint stands half a turn from its
-//! sample. With `w ≥ 0` and `|n_j s| ≤ π/2` a joint has one kink at most, at `θ = θ* ∓ π/2`, `θ* = atan2(p, w)`. Between two
-//! kinks `g` is convex, and Newton's method finds the minimum. Nearly always the piece about `s = 0` has the lowest one: beyond
-//! its kink a joint cannot come nearer than `arccos |p|`.
+//! `g(s) = Σ_j h_j(n_j s)` is a sum over the joints. Each term is convex up to a kink, where the joint is 180° away
+//! from its sample. With `w ≥ 0` and `|n_j s| ≤ π/2` a joint has at most one kink, at `θ = θ* ∓ π/2`, `θ* = atan2(p,
+//! w)`. Between two kinks `g` is convex, and Newton's method finds the minimum. The interval around `s = 0` nearly
+//! always contains the lowest one: beyond its kink a joint cannot come nearer than `arccos |p|`.
 
 use super::distance::{Kept, Sums, View, add_views, keep_views, view};
 use super::poses::{Lane, Part, TILE, Tile, sample};
@@ -11,31 +11,31 @@ use crate::Real;
 use crate::simd::multiversion;
 use std::f64::consts::FRAC_PI_2;
 
-/// Newton steps at most; three to five are enough, and each one at least moves an end of the bracket.
+/// Largest number of Newton steps; three to five suffice, and each moves at least one end of the bracket.
 const STEPS: usize = 60;
 
-/// Relative to the bracket's greatest parameter: steps that are shorter are roundings.
+/// Step length, relative to the bracket's largest parameter, below which steps are rounding errors.
 const SHORTEST: f64 = 4.0 * f64::EPSILON;
 
-/// Relative to the same: after so short a step of Newton's, the next one would be shorter than roundings.
+/// Step length, relative to the same, after which the next Newton step would be shorter than rounding errors.
 const QUADRATIC: f64 = 1e-8;
 
-/// Relative: a piece that is not lower than the one about 0 by more is as good, and does not count.
+/// Relative improvement by which an interval must be lower than the one around 0 to be chosen.
 const LOWER: f64 = 1e-12;
 
-/// What is near a tile of poses.
+/// Nearest points of a tile of poses.
 pub(super) struct Nearest {
-    /// Sums at the nearest points; the bends are not kept up.
+    /// Sums at the nearest points; the bends are not updated.
     pub(super) sums: Sums,
     pub(super) kept: Vec<Kept>,
 }
 
-/// Greatest parameter: the fastest joint has turned by half a turn, `π/2` on S³, and would turn back beyond it.
+/// Largest parameter: the fastest joint has rotated by 180°, `π/2` on S³, and would rotate back beyond it.
 pub(super) fn furthest(v: &[Part]) -> f64 {
     FRAC_PI_2 / v.iter().fold(0.0, |most, part| f64::max(most, part.length))
 }
 
-/// Moves the parameters `s` of a tile of poses to the nearest points, and sees the samples from there.
+/// Moves the parameters `s` of a tile of poses to the nearest points, and computes the samples relative to them.
 pub(super) fn nearest_points(tile: &Tile, v: &[Part], chordal: bool, s: &mut Lane) -> Nearest {
     let end = furthest(v);
     let mut search = Search::new(s, -end, end);
@@ -74,7 +74,7 @@ pub(super) fn nearest_points(tile: &Tile, v: &[Part], chordal: bool, s: &mut Lan
     nearest
 }
 
-/// The square that a joint with `|p| = reach` has at least beyond its kink.
+/// Lower bound of a joint's square beyond its kink, for `|p| = reach`.
 fn least_beyond(reach: f64, chordal: bool) -> f64 {
     let cosine = reach.min(1.0);
     if chordal {
@@ -85,7 +85,7 @@ fn least_beyond(reach: f64, chordal: bool) -> f64 {
 }
 
 impl Nearest {
-    /// Sees a pose from another point.
+    /// Computes a pose relative to another point.
     fn see(&mut self, tile: &Tile, v: &[Part], chordal: bool, i: usize, s: f64) {
         self.sums.square.0[i] = 0.0;
         self.sums.pull.0[i] = 0.0;
@@ -103,7 +103,8 @@ impl Nearest {
 }
 
 multiversion! {
-    /// Narrows the brackets about 0 to the kinks of a joint; `reach` becomes the greatest `|p|` of the joints that have one.
+    /// Narrows the brackets around 0 to the kinks of a joint; `reach` becomes the largest `|p|` of the joints with a
+    /// kink.
     fn find_kinks(
         samples: &[Lane; 4],
         part: Part,
@@ -114,7 +115,7 @@ multiversion! {
     ) {
         let [w, x, y, z] = samples;
         let e = part.axis;
-        // θ* is beyond π/2 − n·end.
+        // There is a kink only if θ* is beyond π/2 − n·end.
         let (sin, cos) = Real::sin_cos(part.length * end);
         let mut p = Lane::ZERO;
         let mut most = Lane([-1.0; TILE]);
@@ -130,7 +131,7 @@ multiversion! {
             let theta = p.0[i].abs().atan2_nonnegative(w.0[i]);
             let kink = (FRAC_PI_2 - theta) / part.length;
             let kinked = (most.0[i] >= 0.0) & (kink < end);
-            // A sample on the one side has its kink on the other.
+            // A sample on one side has its kink on the other.
             low.0[i] = if kinked & (p.0[i] > 0.0) & (-kink > low.0[i]) { -kink } else { low.0[i] };
             high.0[i] = if kinked & (p.0[i] < 0.0) & (kink < high.0[i]) { kink } else { high.0[i] };
             reach.0[i] = if kinked & (most.0[i] > reach.0[i]) { most.0[i] } else { reach.0[i] };
@@ -151,7 +152,7 @@ impl Search {
         Self { low: Lane([low; TILE]), high: Lane([high; TILE]), shortest: *s, tried: [[false; 2]; TILE] }
     }
 
-    /// Takes the parameters into the brackets.
+    /// Clamps the parameters to the brackets.
     fn begin(&mut self, s: &mut Lane) {
         for i in 0..TILE {
             s.0[i] = s.0[i].max(self.low.0[i]).min(self.high.0[i]);
@@ -159,7 +160,7 @@ impl Search {
         }
     }
 
-    /// One step of Newton's for one pose, held by its bracket; whether it was the last one.
+    /// One Newton step for one pose, limited by its bracket; returns whether it was the last.
     ///
     /// A step that would leave the bracket goes to its end, or to the middle if that end has been tried.
     fn step(&mut self, i: usize, pull: f64, bend: f64, s: &mut Lane) -> bool {
@@ -187,7 +188,7 @@ impl Search {
     }
 }
 
-/// The parameter of the lowest of all pieces, if that is lower than `square`.
+/// The parameter of the lowest minimum of all other intervals, if it is lower than `square`.
 fn elsewhere<const CHORDAL: bool>(tile: &Tile, v: &[Part], end: f64, i: usize, square: f64) -> Option<f64> {
     let x: Vec<[f64; 4]> = v.iter().map(|part| sample(&tile[part.joint], i)).collect();
     let mut borders = vec![-end, end];

@@ -1,4 +1,4 @@
-//! Parameters of poses along geodesics, and poses of parameters.
+//! Parameters of poses along geodesics, and poses from parameters.
 
 use super::objective::SAMPLE_NANOSECONDS;
 use super::poses::{Lane, Part, Poses, TILE, go_on, parts, take_away};
@@ -17,11 +17,11 @@ fn directions<T: Real>(directions: &[T], joints: usize) -> Result<Vec<Vec<Part>>
     Ok(wide.chunks_exact(row.max(1)).map(|v| parts(v, &which)).collect())
 }
 
-/// Parameters `2 s` of each pose's projections, one geodesic after the other, `(frames, k)`; radians of rotation, NaN for poses
-/// without a sample.
+/// Parameters `2 s` of each pose's projections, one geodesic after the other, `(frames, k)`, in radians of rotation;
+/// NaN for poses without a valid sample.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit; [`Error::Interrupted`].
+/// [`Error::Length`] if the lengths of slices do not agree; [`Error::Interrupted`].
 pub fn body_scores<T: Real>(
     clip: ClipView<'_, T>,
     means: &[T],
@@ -63,7 +63,7 @@ pub fn body_scores<T: Real>(
 /// Poses `mean · c_{v_1}(s_1) · c_{v_2}(s_2) · …`, `(frames, k)` → `(frames, joints, 4)`, with `w ≥ 0`.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit; [`Error::Interrupted`].
+/// [`Error::Length`] if the lengths of slices do not agree; [`Error::Interrupted`].
 pub fn body_product<T: Real>(
     scores: &[T],
     means: &[T],

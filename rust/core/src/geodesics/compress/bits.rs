@@ -1,21 +1,21 @@
-//! Bits in and out: an adaptive binary range coder (Martin 1979; the carries as in LZMA).
+//! Adaptive binary range coder (Martin 1979; carries as in LZMA).
 //!
-//! Each bit is coded under a context, which learns how often it was 0: quickly at first, over the last 64 bits in the end.
-//! A bit costs `−log₂` of the probability that its context gave it.
+//! Each bit is coded under a context that estimates the probability of a 0: quickly at first, later over the last 64
+//! bits. A bit costs `−log₂` of the probability that its context gave it.
 
-/// The range is widened by a byte as soon as it is below.
+/// The range is extended by a byte when it falls below this.
 const TOP: u32 = 1 << 24;
 
-/// The unit of probabilities.
+/// Probability 1.
 const CERTAIN: u32 = 1 << 16;
 
-/// A context moves by at least this power of 1/2 of the distance.
+/// Slowest adaptation of a context: it moves by this negative power of 2 of the difference.
 const SLOWEST: u32 = 6;
 
-/// Bits after which a context has slowed down.
+/// Number of bits after which the adaptation is slowest.
 const LEARNT: u32 = 62;
 
-/// How often a bit was 0, in 1/65536, and how many bits taught it.
+/// Estimated probability of a 0, in units of 1/65536, and the number of bits seen.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Context {
     zero: u32,
@@ -36,14 +36,14 @@ impl Context {
         }
     }
 
-    /// The part of a range that stands for 0.
+    /// The part of a range that represents 0.
     #[inline]
     fn share(self, span: u32) -> u32 {
         (span >> 12) * (self.zero >> 4)
     }
 }
 
-/// Codes bits.
+/// Encoder of bits.
 #[derive(Debug)]
 pub(super) struct Writer {
     out: Vec<u8>,
@@ -51,7 +51,7 @@ pub(super) struct Writer {
     span: u32,
     /// The last byte that a carry may still change; none before the first.
     held: Option<u8>,
-    /// Bytes 0xFF after it, through which a carry would run.
+    /// Number of bytes 0xFF after it, through which a carry would propagate.
     waiting: usize,
 }
 
@@ -60,7 +60,7 @@ impl Writer {
         Self { out: Vec::new(), low: 0, span: u32::MAX, held: None, waiting: 0 }
     }
 
-    /// Codes a bit under a context.
+    /// Encodes a bit under a context.
     #[inline]
     pub(super) fn bit(&mut self, bit: bool, context: &mut Context) {
         let share = context.share(self.span);
@@ -77,7 +77,7 @@ impl Writer {
         }
     }
 
-    /// Codes an unsigned number of `width` bits, all equally likely.
+    /// Encodes an unsigned number of `width` equally likely bits.
     pub(super) fn plain(&mut self, value: u64, width: u32) {
         for place in (0..width).rev() {
             self.span >>= 1;
@@ -91,7 +91,8 @@ impl Writer {
         }
     }
 
-    /// All bytes. Of the numbers in the range, the one with most zeros at its end is taken, and they are left out.
+    /// All bytes. Of the numbers in the range, the one with the most trailing zero bytes is taken, and these are
+    /// omitted.
     pub(super) fn finish(mut self) -> Vec<u8> {
         self.low = self.low.next_multiple_of(u64::from(TOP));
         for _ in 0..5 {
@@ -103,7 +104,7 @@ impl Writer {
         self.out
     }
 
-    /// Lets the highest byte go, unless it is 0xFF.
+    /// Outputs the highest byte, unless it is 0xFF.
     fn shift(&mut self) {
         let [.., carry, highest, _, _, _] = self.low.to_be_bytes();
         if carry > 0 || highest < 0xFF {
@@ -120,7 +121,7 @@ impl Writer {
     }
 }
 
-/// Decodes what a [`Writer`] coded. Beyond the end come zeros.
+/// Decoder of a [`Writer`]'s bytes. Past the end it reads zeros.
 #[derive(Debug)]
 pub(super) struct Reader<'a> {
     data: std::slice::Iter<'a, u8>,

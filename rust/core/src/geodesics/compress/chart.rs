@@ -1,30 +1,30 @@
-//! Principal geodesic coordinates: a rotation as three turns in sequence about the axes of a frame.
+//! Principal geodesic coordinates: a rotation as three successive rotations about the axes of a frame.
 //!
-//! `q = c · exp(s₁ v₁) · exp(s₂ v₂) · exp(s₃ v₃)` with orthonormal `v`. With `p = a⁻¹ c⁻¹ q a = exp(s₁ x) exp(s₂ y) exp(s₃ z)`,
-//! where `a` turns x, y and z into the axes,
+//! `q = c · exp(s₁ v₁) · exp(s₂ v₂) · exp(s₃ v₃)` with orthonormal `v`. With `p = a⁻¹ c⁻¹ q a = exp(s₁ x) exp(s₂ y)
+//! exp(s₃ z)`, where `a` rotates x, y and z to the axes,
 //!
 //! - `p_w + p_y = (cos s₂ + sin s₂) cos(s₁ + s₃)`, `p_x + p_z = (cos s₂ + sin s₂) sin(s₁ + s₃)`,
 //! - `p_w − p_y = (cos s₂ − sin s₂) cos(s₁ − s₃)`, `p_x − p_z = (cos s₂ − sin s₂) sin(s₁ − s₃)`,
 //!
-//! so three geodesics reach every rotation, and the coordinates have every digit everywhere. Both radii may change their
-//! sign: then the path goes on straight through the points where an angle is not defined, and as far about the first axis
-//! as it likes. The order of all operations is part of the format.
+//! so three geodesics reach every rotation, and the coordinates have full precision everywhere. Both radii may change
+//! their sign. Then the path continues straight through points where an angle is not defined, and the angle about the
+//! first axis is unbounded. The order of all operations is part of the format.
 
 use crate::Real;
 use crate::rotations::quaternion::{angle_between, conjugate_one, exp_one, log_short, product};
 use crate::simd::multiversion;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Adding it to a number below 2⁵¹ rounds to an integer, ties to even.
+/// Adding this to a number below 2⁵¹ rounds to an integer, ties to even.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
-/// Samples whose intermediate results stay in the first-level cache.
+/// Samples whose intermediate results fit in the first-level cache.
 const CHUNK: usize = 64;
 
 /// Coordinates of a path: three planes of `s`, half of the angles.
 pub(super) type Coordinates = [Vec<f64>; 3];
 
-/// A frame: its centre, and the rotation that turns x, y and z into its axes.
+/// A frame: its centre, and the rotation that takes x, y and z to its axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame {
     pub(super) centre: [f64; 4],
@@ -70,7 +70,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// The angle between the turns, of both radii.
+    /// The middle angle, from both radii.
     fn middle(upper: &[f64], lower: &[f64], out: &mut [f64]) {
         for ((&a, &b), out) in upper.iter().zip(lower).zip(out) {
             *out = atan2(a - b, a + b);
@@ -78,8 +78,8 @@ multiversion! {
     }
 }
 
-/// Shifts angles by whole periods so that none is more than half a period from the one before; calls `odd` at each sample
-/// that is shifted by an odd number of them.
+/// Shifts angles by whole periods so that successive ones differ by at most half a period. Calls `odd` for each
+/// sample shifted by an odd number of periods.
 fn unwrap(angles: &mut [f64], period: f64, mut odd: impl FnMut(usize)) {
     let mut turns = 0.0;
     let mut before = angles.first().copied().unwrap_or(0.0);
@@ -95,7 +95,7 @@ fn unwrap(angles: &mut [f64], period: f64, mut odd: impl FnMut(usize)) {
     }
 }
 
-/// Coordinates of a path, without jumps where the path has none.
+/// Coordinates of a path, continuous where the path is.
 pub(super) fn coordinates(path: &[[f64; 4]], frame: Frame) -> Coordinates {
     let n = path.len();
     let left = conjugate_one(product(frame.centre, frame.axes));
@@ -144,7 +144,7 @@ multiversion! {
     }
 }
 
-/// Rotations with these coordinates, as they are in `T`.
+/// Rotations with these coordinates, as stored in `T`.
 pub(super) fn rotations<T: Real>(s: &Coordinates, frame: Frame) -> Vec<[f64; 4]> {
     let mut out = vec![[0.0; 4]; s[0].len()];
     compose::<T>(s, product(frame.centre, frame.axes), conjugate_one(frame.axes), &mut out);
@@ -152,7 +152,7 @@ pub(super) fn rotations<T: Real>(s: &Coordinates, frame: Frame) -> Vec<[f64; 4]>
 }
 
 multiversion! {
-    /// The largest rotation angle between rotations, infinite where one is not a number.
+    /// The largest rotation angle between two paths; infinite if one is NaN.
     fn farthest(a: &[[f64; 4]], b: &[[f64; 4]]) -> f64 {
         let mut largest = 0.0;
         for (a, b) in a.chunks(CHUNK).zip(b.chunks(CHUNK)) {
@@ -183,8 +183,8 @@ pub(super) fn largest_angle(a: &[[f64; 4]], b: &[[f64; 4]]) -> f64 {
 }
 
 multiversion! {
-    /// Magnitudes that are left where the first 0, 1 or 2 coordinates are taken, the largest coordinate, and the sine of
-    /// the largest angle between the first axis and the last, less a right angle.
+    /// Largest residuals with the first 0, 1 or 2 coordinates, the largest coordinate, and the sine of the largest
+    /// deviation of the angle between the first and the last axis from 90°.
     fn sizes(s: &Coordinates) -> [f64; 5] {
         let mut largest = [0.0; 5];
         for ((&a, &b), &c) in s[0].iter().zip(&s[1]).zip(&s[2]) {
@@ -200,32 +200,32 @@ multiversion! {
     }
 }
 
-/// What coordinates leave, as rotation angles, where the first 0, 1, 2 or all of them are taken; the largest coordinate; and
-/// the skew of the axes.
+/// Residuals, as rotation angles, with the first 0, 1, 2 or all coordinates; the largest coordinate; and the skew of
+/// the axes.
 pub(super) fn left(s: &Coordinates) -> ([f64; 4], f64, f64) {
     let [all, two, last, coordinate, skew] = sizes(s);
     ([2.0 * Real::sqrt(all), 2.0 * Real::sqrt(two), 2.0 * last, 0.0], coordinate, skew)
 }
 
 multiversion! {
-    /// Coordinates in parts of a step, rounded.
+    /// Coordinates in fractions of a step, rounded.
     fn scaled(s: &[f64], scale: f64, out: &mut [i64]) {
         for (&s, out) in s.iter().zip(out) {
-            // The integer stands in the low bits of the shifted number.
+            // The integer is in the low bits of the shifted number.
             let shifted = s * scale + ROUND;
             *out = shifted.to_bits().wrapping_sub(ROUND.to_bits()).cast_signed();
         }
     }
 }
 
-/// Coordinates in parts of a step, rounded; below 2⁵¹.
+/// Coordinates in fractions of a step, rounded; below 2⁵¹.
 pub(super) fn in_steps(s: &[f64], scale: f64) -> Vec<i64> {
     let mut out = vec![0; s.len()];
     scaled(s, scale, &mut out);
     out
 }
 
-/// A rotation as three integers of `width` bits: its logarithm, in parts of π/2.
+/// A rotation as three integers of `width` bits: its logarithm, in units of π/2.
 #[allow(clippy::cast_possible_truncation, reason = "below 2³¹")]
 pub(super) fn rounded(q: [f64; 4], width: u32) -> [i64; 3] {
     let scale = greatest(width) / FRAC_PI_2;
@@ -238,7 +238,7 @@ pub(super) fn from_rounded(numbers: [i64; 3], width: u32) -> [f64; 4] {
     exp_one(numbers.map(|number| number as f64 * scale))
 }
 
-/// The largest number of `width` bits with a sign.
+/// The largest signed number of `width` bits.
 fn greatest(width: u32) -> f64 {
     ((1_i64 << (width - 1)) - 1) as f64
 }

@@ -1,17 +1,17 @@
-//! A joint in the coordinates of a frame: how many of them are needed, and how exactly.
+//! A joint in the coordinates of a frame: the number of coordinates needed, and their precision.
 
 use super::chart::{self, Coordinates, Frame};
 
 /// Coordinates of a rotation.
 pub(super) const COMPONENTS: usize = 3;
 
-/// Part of the tolerance that coordinates which are left out may take.
+/// Fraction of the tolerance that omitted coordinates may use.
 const SHARE: f64 = 0.7;
 
-/// Of a step: numbers are computed in 1/64 of it, and their rounding must fit too.
+/// Factor applied to a step: values are computed in 1/64 of it, and their rounding must fit too.
 const MARGIN: f64 = 0.97;
 
-/// Coordinates of valid samples in a frame, as it can be stored.
+/// Coordinates of the valid samples in a frame, as it can be stored.
 pub(super) struct Fit {
     pub(super) width: u32,
     pub(super) numbers: [[i64; 3]; 2],
@@ -32,7 +32,7 @@ impl Fit {
         Self { width, numbers, frame, s, left, farthest, skew }
     }
 
-    /// How many coordinates are needed.
+    /// Number of coordinates needed.
     pub(super) fn components(&self, bound: f64) -> usize {
         self.left.iter().take_while(|&&left| left > SHARE * bound).count()
     }

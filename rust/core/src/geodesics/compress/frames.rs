@@ -1,28 +1,32 @@
 //! Frames of principal geodesic coordinates: the centre of a joint's motion, and its axes in order of importance.
 //!
-//! Two for each joint. The first are the principal geodesics of the squared sine: the point and the geodesic through it that
-//! leave the least mean `sin² d`, which are the main eigenvector of `Σ q qᵀ` and the great circle through the first two;
-//! the axis that does so for what is left, an eigenvector of `Σ u uᵀ` over its samples `(w, u)`; and the axis orthogonal to
-//! both. They exist whether or not there is a unique mean. The second is for joints of two degrees of freedom, whatever
-//! their angles: where `q = c exp(s₁ v₁) exp(s₂ v₂)`, the vectors `l = R(c) v₁` and `v₂` keep `l · R(q) v₂ = 0` in every
-//! frame, so `l` and `v₂` are sought that leave the least mean square of it.
+//! There are two frames per joint.
+//!
+//! The first consists of the principal geodesics of the squared sine. The centre and the first geodesic minimise the
+//! mean `sin² d`: the main eigenvector of `Σ q qᵀ` and the great circle through the first two. The second axis does
+//! so for the residuals: an eigenvector of `Σ u uᵀ` over the samples `(w, u)`. The third axis is orthogonal to both.
+//! They exist whether or not there is a unique mean.
+//!
+//! The second frame is for joints of two degrees of freedom, for any range of angles. If `q = c exp(s₁ v₁) exp(s₂
+//! v₂)`, the vectors `l = R(c) v₁` and `v₂` satisfy `l · R(q) v₂ = 0` in every frame. So `l` and `v₂` are the vectors
+//! that minimise the mean square of this product.
 
 use crate::geodesics::eigen::vectors;
 use crate::parallel::{self, Interrupt};
 use crate::rotations::quaternion::{between, is_missing, product, rotate, unit};
 use crate::{ClipView, Error, Real};
 
-/// Axes are found from about as many frames, evenly spaced.
+/// Approximate number of evenly spaced frames from which axes are computed.
 const SAMPLES: usize = 1024;
 
-/// Times that the two vectors of the second frame are improved in turns.
+/// Number of alternating improvements of the two vectors of the second frame.
 const ROUNDS: usize = 40;
 
-const UNTURNED: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
+const IDENTITY: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
 
 type Vector = [f64; 3];
 
-/// Two frames for each joint, each a centre and the rotation that turns x, y and z into the axes.
+/// Two frames for each joint, each a centre and the rotation that takes x, y and z to the axes.
 ///
 /// A joint without valid samples has unit quaternions.
 ///
@@ -51,7 +55,7 @@ pub fn principal_frames<T: Real>(
             .map(|&q| unit(q))
             .collect();
         if path.is_empty() {
-            return Ok([[UNTURNED; 2]; 2]);
+            return Ok([[IDENTITY; 2]; 2]);
         }
         let mut moments = [[0.0; 4]; 4];
         for &q in &path {
@@ -62,20 +66,20 @@ pub fn principal_frames<T: Real>(
     })
 }
 
-/// The geodesic through two orthogonal points, the second a right angle (on S³) from the first, and the next for what it leaves.
+/// The geodesic through two orthogonal points, 90° apart on S³, and the next geodesic for its residuals.
 fn geodesics(path: &[[f64; 4]], centre: [f64; 4], beside: [f64; 4]) -> [[f64; 4]; 2] {
     let [_, x, y, z] = between(centre, beside);
     let first = [x, y, z];
     let mut moments = [[0.0; 3]; 3];
     for q in path.iter().map(|&q| between(centre, q)) {
-        // The projection: (w, v·u) made unit are cosine and sine of s.
+        // Projection: the normalised (w, v·u) is (cos s, sin s).
         let along = dot3(first, [q[1], q[2], q[3]]);
         let radius = (q[0] * q[0] + along * along + f64::TINY_SQUARE).sqrt();
         let (cosine, sine) = (q[0] / radius, along / radius);
         let left = product([cosine, -sine * first[0], -sine * first[1], -sine * first[2]], q);
         add_outer(&mut moments, [left[1], left[2], left[3]]);
     }
-    // Far below all others, so that the second axis is orthogonal to the first, though nothing be left.
+    // An eigenvalue far below all others makes the second axis orthogonal to the first, even for zero residuals.
     let depth = 4.0 * path.len() as f64;
     for i in 0..3 {
         for j in 0..3 {
@@ -83,7 +87,7 @@ fn geodesics(path: &[[f64; 4]], centre: [f64; 4], beside: [f64; 4]) -> [[f64; 4]
         }
     }
     let second = vectors(moments)[2];
-    [centre, turning_into(first, second)]
+    [centre, rotation_to(first, second)]
 }
 
 fn surface(path: &[[f64; 4]], centre: [f64; 4]) -> [[f64; 4]; 2] {
@@ -116,14 +120,14 @@ fn surface(path: &[[f64; 4]], centre: [f64; 4]) -> [[f64; 4]; 2] {
     let first: Vector = std::array::from_fn(|i| first[i] - inner[i] * along);
     let length = dot3(first, first).sqrt();
     if length < 0.5 {
-        // The vectors do not belong together: no such surface.
-        return [centre, UNTURNED];
+        // The vectors are inconsistent: there is no such surface.
+        return [centre, IDENTITY];
     }
     let first = first.map(|x| x / length);
     let there = rotate(centre, first);
     let axis = cross(there, outer);
-    let way = unit([1.0 + dot3(there, outer), axis[0], axis[1], axis[2]]);
-    [product(way, centre), turning_into(first, inner)]
+    let rotation = unit([1.0 + dot3(there, outer), axis[0], axis[1], axis[2]]);
+    [product(rotation, centre), rotation_to(first, inner)]
 }
 
 /// The sum of `f` over all pairs of indices.
@@ -158,10 +162,10 @@ fn matrix(q: [f64; 4]) -> [Vector; 3] {
     ]
 }
 
-/// The rotation that turns x and y into two orthonormal vectors, with `w ≥ 0`.
-fn turning_into(a: Vector, b: Vector) -> [f64; 4] {
+/// The rotation that takes x and y to two orthonormal vectors, with `w ≥ 0`.
+fn rotation_to(a: Vector, b: Vector) -> [f64; 4] {
     let c = cross(a, b);
-    // Four times the products of the components; the row with the largest square has all digits.
+    // Four times the products of the components; the row with the largest square is accurate.
     let rows = [
         [1.0 + a[0] + b[1] + c[2], b[2] - c[1], c[0] - a[2], a[1] - b[0]],
         [b[2] - c[1], 1.0 + a[0] - b[1] - c[2], b[0] + a[1], c[0] + a[2]],
@@ -181,7 +185,7 @@ mod tests {
     #[test]
     fn two_degrees_of_freedom_are_found() {
         let (a, b) = (unit([0.0, 1.0, 2.0, -1.0]), unit([0.0, 1.0, 0.0, 1.0]));
-        let turn = |axis: [f64; 4], s: f64| {
+        let rotate = |axis: [f64; 4], s: f64| {
             let (sine, cosine) = Real::sin_cos(s);
             [cosine, sine * axis[1], sine * axis[2], sine * axis[3]]
         };
@@ -189,8 +193,8 @@ mod tests {
             .map(|i| {
                 let t = f64::from(i) * 0.05;
                 product(
-                    turn(a, 0.3 + 0.4 * Real::sin_cos(t).0),
-                    turn(b, 0.2 * Real::sin_cos(1.7 * t).1 - 0.5),
+                    rotate(a, 0.3 + 0.4 * Real::sin_cos(t).0),
+                    rotate(b, 0.2 * Real::sin_cos(1.7 * t).1 - 0.5),
                 )
             })
             .collect();

@@ -1,4 +1,4 @@
-//! One joint: what is written of it, so that its tolerance holds.
+//! Encoding of one joint within its tolerance.
 
 use super::Stored;
 use super::bits::{Context, Reader, Writer};
@@ -10,40 +10,41 @@ use crate::Error;
 use crate::parallel::Interrupt;
 use crate::rotations::quaternion::dot;
 
-/// What a joint is if its samples are stored as they are: 0 … 3 stands for that many coordinates in steps, 4 … 6 for floats.
+/// Kind of a joint whose samples are stored unchanged. Kinds 0 … 3 are that many coordinates in steps, kinds 4 … 6
+/// floats.
 const PLAIN: usize = 7;
 
-/// Part of the tolerance that is used: whoever measures again may round otherwise.
+/// Fraction of the tolerance that is used: another implementation may round differently when it measures the error.
 const SURE: f64 = 1.0 - 1e-9;
 
-/// A step that was too long is made shorter by this factor …
+/// Factor that shortens a step that was too long,
 const SHORTER: f64 = 0.9;
 
-/// … so many times, before another coordinate is added.
+/// and the number of attempts before another coordinate is added.
 const ATTEMPTS: usize = 8;
 
-/// Numbers of a series are smaller: predictions are computed in 64 bits.
+/// Upper limit of the values of a series: predictions are computed in 64 bits.
 const LARGEST: f64 = 70_368_744_177_664.0; // 2⁴⁶
 
-/// Coordinates are smaller (radians): sines beyond lose digits.
+/// Upper limit of coordinates, radians: sines of larger ones lose digits.
 const FARTHEST: f64 = 1e5;
 
 /// Bits of each number of a frame.
 const COARSE: u32 = 16;
 
-/// The same below a tolerance of [`FINE_BELOW`].
+/// The same for tolerances below [`FINE_BELOW`].
 const FINE: u32 = 32;
 
-/// Tolerance in radians below which numbers of a frame have many bits: 16 are off by up to 8e-5 rad.
+/// Tolerance in radians below which the numbers of a frame have more bits: 16 bits have errors of up to 8e-5 rad.
 const FINE_BELOW: f64 = 1e-3;
 
 /// Axes of a joint that does not move.
-const UNTURNED: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
+const IDENTITY: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
 
 /// Bits of the length of a step: sign, exponent of float64, and eight bits of the significand.
 const STEP_BITS: u32 = 20;
 
-/// What the coder learns, over all joints.
+/// Adaptive contexts of the coder, shared by all joints.
 pub(super) struct Contexts {
     missing: [Context; 2],
     ahead: Numbers,
@@ -56,7 +57,7 @@ impl Contexts {
     }
 }
 
-/// What is written of a joint.
+/// Encoded contents of a joint.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Joint {
     kind: usize,
@@ -67,12 +68,12 @@ pub(super) struct Joint {
     coded: Vec<Series>,
     floats: Vec<f64>,
     opposite: bool,
-    /// The largest rotation angle between a sample and what comes back.
+    /// The largest rotation angle between a sample and its decoded value.
     pub(super) error: f64,
 }
 
 impl Joint {
-    /// What is to be written of valid samples, so that they come back within the tolerance.
+    /// The encoding of valid samples whose decoded values are within the tolerance.
     pub(super) fn new<T: Stored>(
         valid: Vec<[f64; 4]>,
         missing: Vec<bool>,
@@ -103,7 +104,7 @@ impl Joint {
         Ok(Self { kind: PLAIN, missing, floats: valid.into_flattened(), ..Self::default() })
     }
 
-    /// Takes so many coordinates; `None` if the bound does not hold.
+    /// Tries an encoding with `components` coordinates; `None` if the error exceeds the bound.
     fn within<T: Stored>(
         fit: &Fit,
         bound: f64,
@@ -137,7 +138,7 @@ impl Joint {
                     joint.floats.extend_from_slice(s);
                 }
             }
-            let frame = if components == 0 { Frame { axes: UNTURNED, ..fit.frame } } else { fit.frame };
+            let frame = if components == 0 { Frame { axes: IDENTITY, ..fit.frame } } else { fit.frame };
             let result = chart::rotations::<T>(&s, frame);
             joint.error = chart::largest_angle(valid, &result);
             if joint.error <= bound {
@@ -150,7 +151,7 @@ impl Joint {
         Ok(None)
     }
 
-    /// The valid samples as they come back, continuous in sign.
+    /// The decoded valid samples, continuous in sign.
     pub(super) fn path<T: Stored>(&self) -> Vec<[f64; 4]> {
         let count = self.count();
         if count == 0 {
@@ -167,7 +168,7 @@ impl Joint {
                 s.copy_from_slice(floats);
             }
             let [centre, axes] = self.frame.map(|numbers| chart::from_rounded(numbers, self.width));
-            let axes = if self.kind == 0 { UNTURNED } else { axes };
+            let axes = if self.kind == 0 { IDENTITY } else { axes };
             chart::rotations::<T>(&s, Frame { centre, axes })
         };
         let mut opposite = self.opposite;
@@ -182,7 +183,7 @@ impl Joint {
         path
     }
 
-    /// Which samples are missing.
+    /// Marks of missing samples.
     pub(super) fn missing(&self) -> &[bool] {
         &self.missing
     }
@@ -191,7 +192,7 @@ impl Joint {
         self.missing.iter().filter(|&&missing| !missing).count()
     }
 
-    /// Codes the joint.
+    /// Encodes the joint.
     pub(super) fn write<T: Stored>(
         &self,
         writer: &mut Writer,
@@ -235,7 +236,7 @@ impl Joint {
         Ok(())
     }
 
-    /// Decodes a joint of a clip of so many frames.
+    /// Decodes a joint of a clip with `frames` frames.
     pub(super) fn read<T: Stored>(
         reader: &mut Reader<'_>,
         frames: usize,
@@ -281,18 +282,18 @@ impl Joint {
     }
 }
 
-/// Numbers in parts of a step as coordinates.
+/// Converts values in fractions of a step to coordinates.
 fn from_steps(numbers: &[i64], step: f64) -> Vec<f64> {
     let unit = step / STEP as f64;
     numbers.iter().map(|&number| number as f64 * unit).collect()
 }
 
-/// The largest step that can be stored and is not longer.
+/// The largest storable step that is not longer.
 fn storable(step: f64) -> f64 {
     f64::from_bits(step.to_bits() >> (64 - STEP_BITS) << (64 - STEP_BITS))
 }
 
-/// The number that `width` bits stand for.
+/// The signed number of `width` bits.
 fn signed(bits: u64, width: u32) -> i64 {
     (bits << (64 - width)).cast_signed() >> (64 - width)
 }
@@ -307,7 +308,7 @@ mod tests {
             .map(|i| crate::Real::sin_cos(f64::from(i) / 100.0))
             .map(|(s, c)| [c, s, 0.0, 0.0])
             .collect();
-        let frames = [[UNTURNED; 2]; 2];
+        let frames = [[IDENTITY; 2]; 2];
         let (stop, go) = (Interrupt::new(), Interrupt::new());
         stop.set();
         let fit = |interrupt: &Interrupt| {

@@ -1,10 +1,10 @@
-//! Compression to a tolerance: one stream of bits, joint by joint, in principal geodesic coordinates.
+//! Compression within a tolerance: one bit stream, joint by joint, in principal geodesic coordinates.
 //!
-//! For each joint it holds what the joint is, which samples are missing, the frame of its coordinates, the length of a step,
-//! and as many coordinates as the tolerance needs, each a series of whole numbers. The writer computes what the reader will,
-//! measures the largest error, and takes shorter steps, more coordinates or, in the end, the samples as they are, until
-//! the tolerance holds. Bits are the same at every SIMD level and for every number of threads, and the reference writes
-//! the same stream.
+//! For each joint the stream holds its kind, the missing samples, the frame of its coordinates, the length of a step,
+//! and as many coordinates as the tolerance needs, each a series of integers. The writer computes the reader's result
+//! and measures its largest error. Until the tolerance holds, it takes shorter steps, more coordinates or finally the
+//! unchanged samples. The bits are the same at every SIMD level and for every number of threads, and the reference
+//! writes the same stream.
 
 mod bits;
 mod chart;
@@ -23,19 +23,19 @@ use crate::{ClipMut, ClipView, Error, Real};
 use bits::{Reader, Writer};
 use joint::{Contexts, Joint};
 
-/// Joints that are computed together, before they are written one after the other.
+/// Joints that are computed together before they are written in order.
 const BATCH: usize = 16;
 
-/// Estimated nanoseconds per sample to find out what is written, and to compose what was read.
+/// Estimated nanoseconds per sample of the encoding decisions, and of decoding.
 const NANOSECONDS: usize = 150;
 
-/// A real number whose bits can be stored.
+/// A real type whose bits can be stored.
 pub trait Stored: Real {
-    /// How many bits.
+    /// Number of bits.
     const BITS: u32;
     /// The bits.
     fn to_plain(self) -> u64;
-    /// The number of these bits.
+    /// The number with these bits.
     fn from_plain(bits: u64) -> Self;
 }
 
@@ -60,14 +60,15 @@ impl Stored for f64 {
     }
 }
 
-/// How a clip is compressed.
+/// Parameters of the compression.
 #[derive(Debug, Clone)]
 pub struct Compress {
-    /// What [`principal_frames`] found: two for each joint, of which the one is taken that needs fewer coordinates.
+    /// Result of [`principal_frames`]: two frames for each joint, of which the one that needs fewer coordinates is
+    /// used.
     pub frames: Vec<[[[f64; 4]; 2]; 2]>,
-    /// Per joint, the largest rotation angle between a sample and what comes back, radians, above 0.
+    /// Tolerance per joint: the largest rotation angle between a sample and its decoded value, radians, above 0.
     pub tolerance: Vec<f64>,
-    /// Whether coordinates become whole numbers; else they are stored as floats.
+    /// Whether coordinates are stored as integers; otherwise as floats.
     pub quantised: bool,
 }
 
@@ -75,7 +76,7 @@ impl Compress {
     /// The stream of a clip, and the largest error in radians.
     ///
     /// # Errors
-    /// [`Error::Length`] if the parameters do not fit the clip; [`Error::Interrupted`].
+    /// [`Error::Length`] if the number of frames or tolerances is not that of the joints; [`Error::Interrupted`].
     pub fn compress<T: Stored>(
         &self,
         clip: ClipView<'_, T>,
@@ -112,7 +113,7 @@ impl Compress {
     }
 }
 
-/// The clip of a stream; NaN where samples were missing. Whatever the bytes are, they stand for some clip.
+/// Decodes a clip; NaN where samples are missing. Every sequence of bytes decodes to some clip.
 ///
 /// # Errors
 /// [`Error::Interrupted`].

@@ -1,16 +1,17 @@
-//! Integers as bits: small ones are short, and how short depends on what lies nearby.
+//! Variable-length code for integers; the code length adapts to the values nearby.
 
 use super::bits::{Context, Reader, Writer};
 
-/// How many sizes of the neighbourhood are told apart.
+/// Number of size classes of the neighbourhood.
 const CLASSES: usize = 24;
 
 /// Bits of the largest magnitude.
 const WIDEST: usize = 48;
 
-/// Contexts for integers: the length of the magnitude in bits, one by one; its second bit; the rest and the sign are plain.
+/// Contexts for integers: the bit length of the magnitude, one bit at a time; then its second bit. The remaining bits
+/// and the sign are stored plainly.
 ///
-/// The contexts depend on the magnitudes nearby, since large numbers lie beside large ones.
+/// The contexts depend on the magnitudes nearby, because large values lie beside large ones.
 #[derive(Debug)]
 pub(super) struct Numbers {
     lengths: Vec<[Context; WIDEST]>,
@@ -22,7 +23,7 @@ impl Numbers {
         Self { lengths: vec![[Context::NEW; WIDEST]; CLASSES], seconds: [Context::NEW; WIDEST + 1] }
     }
 
-    /// Codes a number below 2⁴⁸; `nearby` says how large others in its neighbourhood are, together.
+    /// Encodes a number below 2⁴⁸; `nearby` is the sum of magnitudes in its neighbourhood.
     pub(super) fn write(&mut self, writer: &mut Writer, value: i64, nearby: u64) {
         let size = value.unsigned_abs();
         let lengths = &mut self.lengths[size_class(nearby)];
@@ -78,7 +79,7 @@ fn bit_length(size: u64) -> usize {
     (u64::BITS - size.leading_zeros()) as usize
 }
 
-/// Which of the classes a size belongs to: two for each power of 2.
+/// Class of a size: two classes for each power of 2.
 #[inline]
 #[allow(clippy::cast_possible_truncation, reason = "0 or 1")]
 fn size_class(size: u64) -> usize {

@@ -1,8 +1,9 @@
-//! Integers in time: every 32nd first, then always the one in the middle, predicted from those on both sides.
+//! Integer series in time, hierarchically: every 32nd value first, then repeatedly the middle ones, predicted from
+//! both sides.
 //!
-//! Numbers are in 1/64 of a step. What is coded is by how many whole steps a number differs from its prediction, so that
-//! what comes back is at most half a step off, whatever the prediction was, and smooth motion between costs next to nothing.
-//! Arithmetic wraps: nothing that is read can make it fail.
+//! Values are in 1/64 of a step. Differences from the predictions are coded in whole steps. So a decoded value is at
+//! most half a step off, whatever the prediction was, and smooth motion between coded values costs almost nothing.
+//! Arithmetic wraps: no input can make it fail.
 
 use super::bits::{Reader, Writer};
 use super::numbers::Numbers;
@@ -10,43 +11,43 @@ use crate::Error;
 use crate::parallel::Interrupt;
 use crate::simd::multiversion;
 
-/// Parts of a step that predictions are computed in.
+/// Fractions of a step in which predictions are computed.
 pub(super) const STEP: i64 = 1 << STEP_SHIFT;
 
 /// The same as a power of 2.
 const STEP_SHIFT: u32 = 6;
 
-/// Most halvings: numbers 2⁵ frames apart hardly know of each other.
+/// Largest number of halvings: values 2⁵ frames apart are almost independent.
 const LEVELS: usize = 5;
 
-/// Interpolation at the middle: linear, cubic, quintic; weights of the neighbours, and the power of 2 that their sum is
-/// divided by.
+/// Interpolation at the middle: linear, cubic, quintic. Weights of the neighbours, and the power of 2 that divides
+/// their sum.
 const KERNELS: [([i64; 6], u32); 3] =
     [([0, 0, 1, 1, 0, 0], 1), ([0, -1, 9, 9, -1, 0], 4), ([3, -25, 150, 150, -25, 3], 8)];
 
-/// Neighbours on each side that the widest kernel looks at.
+/// Neighbours on each side that the widest kernel uses.
 const REACH: usize = 3;
 
-/// Numbers after which Ctrl-C is heeded: some milliseconds.
+/// Values between two checks of the interrupt flag: some milliseconds.
 pub(super) const CHECKED: usize = 1 << 16;
 
-/// Stands for the neighbourhood of the first number, of which nothing is known.
+/// Size of the unknown neighbourhood of the first value.
 const FAR: u64 = 1 << 8;
 
-/// A series as it is written: differences in steps, and the kernel of each level, coarse ones first.
+/// A series as it is written: differences in steps, and the kernel of each level, coarse levels first.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Series {
     steps: Vec<i64>,
     kernels: Vec<usize>,
 }
 
-/// How often the distance of the numbers that come first is halved.
+/// Number of times that the distance of the first values is halved.
 fn halvings(n: usize) -> usize {
     (0..LEVELS).take_while(|level| 2 << level < n).count()
 }
 
 multiversion! {
-    /// Interpolates at the middle of the numbers that are there; `known` has [`REACH`] more of them on both sides.
+    /// Interpolates halfway between the known values; `known` has [`REACH`] more of them on both sides.
     fn interpolate(known: &[i64], kernel: usize, out: &mut [i64]) {
         let (weights, shift) = KERNELS[kernel];
         let round = 1_i64 << (shift - 1);
@@ -61,7 +62,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Differences in steps from the predictions; returns the sum of their magnitudes.
+    /// Differences from the predictions, in steps; returns the sum of their magnitudes.
     fn subtract(numbers: &[i64], predictions: &[i64], out: &mut [i64]) -> u64 {
         let mut total = 0_u64;
         for ((&x, &p), out) in numbers.iter().zip(predictions).zip(out) {
@@ -73,7 +74,7 @@ multiversion! {
     }
 }
 
-/// The numbers that are there before `level`, and [`REACH`] more on both sides, straight on.
+/// The values known before `level`, with [`REACH`] more on both sides by linear extrapolation.
 fn known(back: &[i64], level: usize, out: &mut Vec<i64>) {
     out.clear();
     out.resize(REACH, 0);
@@ -94,7 +95,7 @@ fn known(back: &[i64], level: usize, out: &mut Vec<i64>) {
     }
 }
 
-/// Predicts the numbers; also what comes back.
+/// The coded differences, and the decoded values.
 pub(super) fn differences(numbers: &[i64]) -> (Series, Vec<i64>) {
     let n = numbers.len();
     let levels = halvings(n);
@@ -134,7 +135,7 @@ pub(super) fn differences(numbers: &[i64]) -> (Series, Vec<i64>) {
 }
 
 impl Series {
-    /// The numbers that come back.
+    /// The decoded values.
     pub(super) fn restored(&self) -> Vec<i64> {
         let n = self.steps.len();
         let mut back = vec![0_i64; n];
@@ -156,7 +157,7 @@ impl Series {
         back
     }
 
-    /// Codes the series; `ahead` holds the contexts of the numbers that come first, `between` those of the others.
+    /// Encodes the series; `ahead` are the contexts of the first values, `between` those of the others.
     pub(super) fn write(
         &self,
         writer: &mut Writer,
@@ -181,7 +182,7 @@ impl Series {
         Ok(())
     }
 
-    /// Decodes a series of `n` numbers.
+    /// Decodes a series of `n` values.
     pub(super) fn read(
         reader: &mut Reader<'_>,
         n: usize,
@@ -208,18 +209,18 @@ impl Series {
     }
 }
 
-/// Every now and then, whether there is still somebody who waits.
+/// Checks the interrupt flag at every [`CHECKED`]-th value.
 fn check(count: usize, interrupt: &Interrupt) -> Result<(), Error> {
     if count.is_multiple_of(CHECKED) { interrupt.check() } else { Ok(()) }
 }
 
-/// Mean magnitude of a series so far: it forgets what is more than about 16 numbers ago.
+/// Running mean of the magnitudes, over about the last 16 values.
 struct Usual {
     sum: u64,
 }
 
 impl Usual {
-    /// As if all had been 2.
+    /// Start value: as if all magnitudes had been 2.
     fn new() -> Self {
         Self { sum: 512 }
     }
@@ -234,13 +235,14 @@ impl Usual {
     }
 }
 
-/// Four times the magnitude before, among the numbers that come first.
+/// Four times the previous magnitude among the first values.
 fn size_before(steps: &[i64], i: usize, top: usize) -> u64 {
-    // The first number is no difference.
+    // The first value is not a difference.
     if i < 2 * top { FAR } else { 4 * steps[i - top].unsigned_abs() }
 }
 
-/// The sum of four magnitudes that both sides know: two of this level before, and those of coarser levels on both sides.
+/// The sum of four magnitudes known to encoder and decoder: two previous ones of this level, and those of coarser
+/// levels on both sides.
 #[inline]
 fn sizes_nearby(steps: &[i64], i: usize, apart: usize) -> u64 {
     let at =

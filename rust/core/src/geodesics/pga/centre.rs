@@ -1,4 +1,4 @@
-//! The centre of rotations, and whether it is one.
+//! The centre of rotations, and its uniqueness.
 
 use super::samples::{LANES, Quad, Samples};
 use crate::eigen::eigenvectors;
@@ -8,22 +8,22 @@ use crate::rotations::quaternion::{angle_between, between, exp_one, product, uni
 use crate::simd::multiversion;
 use crate::{ClipView, Error, Real};
 
-/// Radians of rotation: of samples that lie nearer to their mean there is no other one (Afsari 2011).
+/// Rotation angle, radians: if all samples are nearer to their mean, it is unique (Afsari 2011).
 const CERTAIN_RADIUS: f64 = std::f64::consts::FRAC_PI_2;
 
-/// Radians on S³: two ends of the iteration that are nearer are one.
+/// Radians on S³: two results of the iteration that are nearer are the same mean.
 const SAME_MEAN: f64 = 1e-6;
 
-/// Samples, at most, that are asked whether there is another mean.
+/// Largest number of samples used to search for another mean.
 const SUBSET: usize = 4096;
 
-/// Relative difference of mean squared distances up to which another mean is as good.
+/// Relative difference of mean squared distances up to which another mean is equally good.
 const AS_GOOD: f64 = 1e-9;
 
-/// Radians on S³: steps shorter than this end the iteration.
+/// Step length, radians on S³, at which the iteration ends.
 const STEP: f64 = 1e-14;
 
-/// Most steps.
+/// Largest number of steps.
 const ITERATIONS: usize = 100;
 
 /// The centre of a joint's rotations.
@@ -33,12 +33,12 @@ pub struct Centre {
     pub mean: [f64; 4],
     /// Greatest rotation angle from the mean to a sample; NaN for a joint without samples.
     pub radius: f64,
-    /// Whether no other rotation has as small a mean squared distance to the samples: none to which the iteration leads from
-    /// the principal axes of the samples in R⁴ and from the diagonals between them.
+    /// Whether no other rotation has as small a mean squared distance to the samples. The candidates are the results
+    /// of the iteration from the principal axes of the samples in R⁴ and from the diagonals between them.
     pub unique: bool,
 }
 
-/// Karcher mean of each joint, how far the samples reach from it, and whether it is the only one.
+/// Karcher mean of each joint, the largest distance of its samples, and whether the mean is unique.
 ///
 /// # Errors
 /// [`Error::Interrupted`].
@@ -57,7 +57,7 @@ pub fn geodesic_centre<T: Real>(clip: ClipView<'_, T>, interrupt: &Interrupt) ->
     })
 }
 
-/// Whether the iteration for the mean ends nowhere else with as small a mean square as from 1.
+/// Whether all other starts of the iteration lead to a larger mean square than the start at 1.
 fn is_only_mean(samples: &Samples, interrupt: &Interrupt) -> Result<bool, Error> {
     let count = samples.count() as f64;
     let mut sums = samples.sums(3, interrupt, add_moments)?;
@@ -90,7 +90,7 @@ fn is_only_mean(samples: &Samples, interrupt: &Interrupt) -> Result<bool, Error>
     Ok(true)
 }
 
-/// Where the iteration for the mean ends from a start, and the sum of squared distances there.
+/// Result of the iteration for the mean from a start, and the sum of squared distances there.
 fn iterated(samples: &Samples, start: [f64; 4], interrupt: &Interrupt) -> Result<([f64; 4], f64), Error> {
     let mut x = start;
     let mut square = f64::INFINITY;
@@ -134,7 +134,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Sums of the logarithms seen from `centre`, the shorter way, and of their squares.
+    /// Sums of the logarithms relative to `centre`, of the shorter rotations, and of their squares.
     fn add_logarithms(samples: Quad<'_>, centre: [f64; 4], sums: &mut [[f64; LANES]; 4]) {
         let total = sums;
         let mut sums = *total;

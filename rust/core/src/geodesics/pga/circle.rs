@@ -1,11 +1,11 @@
-//! The direction of the nearest geodesic among those in a plane, exactly.
+//! Exact direction of the nearest geodesic among those in a plane.
 //!
-//! In a plane of directions, with `α` the angle of a sample's vector part `u` and `r = |u|`, the distance to the geodesic with
-//! the direction `θ` is `arcsin(r |sin(θ − α)|)`: concave but for its kink at `α`. So is the mean over the samples, which
-//! therefore has its minimum at the angle of a sample.
+//! In a plane of directions, with `α` the angle of a sample's vector part `u` and `r = |u|`, the distance to the
+//! geodesic with the direction `θ` is `arcsin(r |sin(θ − α)|)`. It is concave except for its kink at `α`. So is the
+//! mean over the samples, which therefore has its minimum at the angle of a sample.
 //!
-//! Branch and bound finds it. Between the angles `a` and `b` the samples that have no kink there make a concave sum, which
-//! is nowhere less than the lesser of its values at `a` and `b`; the others add at least 0.
+//! The minimum is found by branch and bound. Between the angles `a` and `b`, the samples without a kink there have a
+//! concave sum, which is at least the smaller of its values at `a` and `b`. The other samples add at least 0.
 
 use super::descent::Found;
 use super::objective::{Objective, scaled_to_one, value};
@@ -14,7 +14,7 @@ use crate::parallel::{self, Interrupt};
 use crate::simd::multiversion;
 use crate::{Error, Real};
 
-/// Parts of the circle, with equally many kinks, that the search begins with.
+/// Number of parts of the circle, with equally many kinks, at the start of the search.
 const PARTS: usize = 16;
 
 /// Kinks per task.
@@ -32,17 +32,17 @@ struct Kink {
     sample: usize,
 }
 
-/// Kinks between two angles that are not yet excluded; those beyond lie before or behind in the order.
+/// Kinks between two angles that are not yet excluded; the others are ordered before or after them.
 #[derive(Debug, Clone, Copy)]
 struct Part {
     start: usize,
     end: usize,
-    /// The objective at the kinks where it starts and ends; the end's is that of the first kink behind it.
+    /// The objective at the first kink and at the first kink after the end.
     ends: [f64; 2],
     bound: f64,
 }
 
-/// The search: kinks that are sorted as far as was needed, and the best one so far.
+/// Search state: kinks, sorted as far as needed, and the best one so far.
 struct Search<'a> {
     samples: &'a Samples,
     plane: [[f64; 3]; 2],
@@ -52,7 +52,8 @@ struct Search<'a> {
     interrupt: &'a Interrupt,
 }
 
-/// Direction in the plane of two unit vectors with the lowest mean distance; the samples' vector parts lie in that plane.
+/// Direction in the plane of two unit vectors with the lowest mean distance; the samples' vector parts lie in that
+/// plane.
 pub(super) fn nearest_in_plane(
     samples: &Samples,
     plane: [[f64; 3]; 2],
@@ -94,7 +95,7 @@ pub(super) fn nearest_in_plane(
     Ok(Found { direction: search.best, descent: search.descent })
 }
 
-/// The samples that have a direction, in the plane.
+/// The samples with a direction, in the plane.
 fn kinks(samples: &Samples, plane: [[f64; 3]; 2], interrupt: &Interrupt) -> Result<Vec<Kink>, Error> {
     let parts = samples.map(10, interrupt, |part, start| {
         let [w, x, y, z] = part;
@@ -119,8 +120,8 @@ impl Search<'_> {
         self.descent.last().copied().unwrap_or(f64::INFINITY)
     }
 
-    /// Brings the kink whose turn it would be in sorted order to `at`, and those before and behind it to its sides, among the
-    /// kinks `from..to`.
+    /// Partitions the kinks `from..to` so that the one at index `at` is in sorted order, with smaller ones before it
+    /// and larger ones after it.
     fn sort_out(&mut self, from: usize, at: usize, to: usize) {
         self.kinks[from..to].select_nth_unstable_by(at - from, |a, b| {
             a.angle.total_cmp(&b.angle).then(a.sample.cmp(&b.sample))
@@ -134,7 +135,7 @@ impl Search<'_> {
         u.map(|x| x / length)
     }
 
-    /// The objective at the direction of a kink, noted if it is the best so far.
+    /// The objective at the direction of a kink, recorded if it is the best so far.
     fn objective_at(&mut self, kink: usize) -> Result<f64, Error> {
         let line = self.line(kink);
         let [a, b] = self.plane;
@@ -147,7 +148,7 @@ impl Search<'_> {
         Ok(here)
     }
 
-    /// Opens the part between two kinks if something lower may lie in it.
+    /// Adds the part between two kinks to the open ones if it may contain a lower value.
     fn divide(&self, start: usize, end: usize, ends: [f64; 2], open: &mut Vec<Part>) -> Result<(), Error> {
         if end - start < 2 {
             return Ok(());

@@ -1,36 +1,37 @@
-//! Descent to the direction of a geodesic that is nearer than all around it.
+//! Descent to a local minimum of a geodesic's direction.
 //!
-//! Newton's method on the sphere of directions, each step made to descend: curvatures count by their size, and a step that
-//! does not lower the objective is halved. A direction on which samples lie, a cone point, is a minimum if the other samples
-//! pull less than those on it hold; the descent leaves it along the pull otherwise.
+//! Newton's method on the sphere of directions, modified to descend: curvatures enter by their absolute value, and a
+//! step that does not lower the objective is halved. A direction on which samples lie is a cone point. It is a
+//! minimum if the gradient of the other samples is smaller than the slope of those on it; otherwise the descent
+//! leaves it along the gradient.
 
 use super::objective::{Objective, Slope, basis, scaled_to_one, slope, value};
 use super::samples::{Samples, cross, dot};
 use crate::parallel::Interrupt;
 use crate::{Error, Real};
 
-/// Newton steps at most; a handful is enough unless samples lie very near the geodesic, but not on it.
+/// Largest number of Newton steps; a few suffice unless samples lie very near the geodesic but not on it.
 const STEPS: usize = 100;
 
-/// Shortenings of a step at most: what is left is below the roundings of a direction.
+/// Largest number of halvings of a step: after them it is below the rounding error of a direction.
 const HALVINGS: usize = 40;
 
-/// Radians: a step that ends the descent.
+/// Step length, radians, at which the descent ends.
 const SHORTEST: f64 = 1e-13;
 
-/// Radians: a longer step has left the neighbourhood that the curvature speaks of.
+/// Longest step, radians: farther away the curvature is not valid.
 const LONGEST: f64 = 0.5;
 
-/// Of the greater curvature: a smaller one says nothing.
+/// Smallest curvature, relative to the larger one: smaller ones carry no information.
 const LEAST_CURVATURE: f64 = 1e-8;
 
-/// Relative: a difference of objectives that roundings make.
+/// Relative difference of objectives attributed to rounding.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
-/// Steps: how far the direction of a sample may lie to be tried itself.
+/// In steps: a sample whose direction is nearer is tried itself.
 const ONTO_SAMPLE: f64 = 4.0;
 
-/// A direction, and the objectives on the way to it, which never rise.
+/// A direction, and the objectives at the steps that led to it, which never increase.
 #[derive(Debug, Clone)]
 pub(super) struct Found {
     pub(super) direction: [f64; 3],
@@ -44,7 +45,7 @@ impl Found {
     }
 }
 
-/// Descends from a direction to a minimum near it.
+/// Descends from a direction to a local minimum.
 pub(super) fn descent(
     samples: &Samples,
     start: [f64; 3],
@@ -58,7 +59,7 @@ pub(super) fn descent(
     for _ in 0..STEPS {
         let mut step = newton_step(&here);
         let length = size(step);
-        // A length that is not a number ends it too.
+        // A NaN length ends it too.
         if length.is_nan() || length < SHORTEST {
             break;
         }
@@ -74,7 +75,7 @@ pub(super) fn descent(
             if moved.is_some() {
                 break;
             }
-            let trial = turned(v, [0, 1, 2].map(|i| step[0] * across[0][i] + step[1] * across[1][i]));
+            let trial = moved_along(v, [0, 1, 2].map(|i| step[0] * across[0][i] + step[1] * across[1][i]));
             let trial_across = basis(trial);
             let there = slope(samples, trial, trial_across, objective, interrupt)?;
             let lower = there.value < here.value;
@@ -96,20 +97,20 @@ fn size(step: [f64; 2]) -> f64 {
     (step[0] * step[0] + step[1] * step[1]).sqrt()
 }
 
-/// Step that descends; 0 at a minimum, which a cone point is if the gradient of the others is no steeper.
+/// A descent step; 0 at a minimum. A cone point is a minimum if the gradient of the other samples is not steeper.
 fn newton_step(here: &Slope) -> [f64; 2] {
     let [a, b, c] = here.hessian;
     let steepness = size(here.gradient);
     if steepness <= here.cone {
         return [0.0; 2];
     }
-    // Away from a cone point only the steepest way is sure to lead downhill.
+    // From a cone point only the steepest direction is sure to descend.
     let along = if here.cone > 0.0 {
-        let way = here.gradient.map(|x| x / steepness);
-        [way, [0.0; 2]]
+        let direction = here.gradient.map(|x| x / steepness);
+        [direction, [0.0; 2]]
     } else {
         let spread = ((a - c) * (a - c) + 4.0 * b * b).sqrt();
-        // The eigenvector for the greater eigenvalue, from the column with the greater entries.
+        // The eigenvector of the larger eigenvalue, from the column with the larger entries.
         let main = if a >= c { [a - c + spread, 2.0 * b] } else { [2.0 * b, c - a + spread] };
         let length = size(main);
         let main = if length > 0.0 { main.map(|x| x / length) } else { [1.0, 0.0] };
@@ -129,7 +130,7 @@ fn newton_step(here: &Slope) -> [f64; 2] {
     step.map(|x| x * shortened)
 }
 
-/// Direction of the nearest sample, if it lies within `reach` radians and is better.
+/// Direction of the nearest sample, if it is within `reach` radians and has a lower objective.
 fn onto_sample(
     samples: &Samples,
     v: [f64; 3],
@@ -147,8 +148,8 @@ fn onto_sample(
     Ok(better.then_some(direction))
 }
 
-/// Unit vector `v` moved along the sphere by a vector across it.
-fn turned(v: [f64; 3], step: [f64; 3]) -> [f64; 3] {
+/// Moves the unit vector `v` along the sphere by an orthogonal vector.
+fn moved_along(v: [f64; 3], step: [f64; 3]) -> [f64; 3] {
     let angle = dot(step, step).sqrt();
     let (sine, cosine) = Real::sin_cos(angle);
     let factor = if angle > 0.0 { sine / angle } else { 1.0 };

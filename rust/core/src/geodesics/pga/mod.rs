@@ -1,8 +1,8 @@
-//! Exact principal geodesic analysis: geodesics of rotations through their mean, one after the other.
+//! Exact principal geodesic analysis: successive geodesics of rotations through their mean.
 //!
-//! With `x = mean⁻¹ q`, in the half of S³ about 1, the first direction `v` is the one whose geodesic `(cos s, sin s · v)` lies
-//! nearest to the samples; the next is fitted to what it leaves, `π_v(x)⁻¹ x`, and so on (Said et al. 2007). The vector
-//! parts of what is left lie across the direction before, and so does the next direction.
+//! With `x = mean⁻¹ q`, in the half of S³ about 1, the first direction `v` minimises the distance of the geodesic
+//! `(cos s, sin s · v)` to the samples. The next is fitted to the residuals `π_v(x)⁻¹ x`, and so on (Said et al.
+//! 2007). The vector parts of the residuals are orthogonal to the previous direction, and so is the next direction.
 
 mod centre;
 mod circle;
@@ -23,44 +23,45 @@ use crate::{ClipView, Error, Real};
 use descent::Found;
 use samples::{LANES, Quad, Samples, dot};
 
-/// Radians on S³: residuals that are all nearer to 1 are roundings, and have no direction.
+/// Radians on S³: if all residuals are smaller, they are rounding errors and have no direction.
 const NOTHING_LEFT: f64 = 1e-14;
 
-/// Distance from a plane through 0, of the longest, up to which vectors lie in it but for roundings.
+/// Distance from a plane through 0, relative to the longest vector, up to which vectors lie in the plane within
+/// rounding.
 const FLAT: f64 = 1e-14;
 
-/// Share of the greatest parameter from which a sample may decide about the sign of an axis. No share that evenly spaced
-/// samples of a swing have exactly, for then roundings would decide.
+/// A sample determines the sign of an axis if its parameter exceeds this fraction of the largest. Evenly spaced
+/// samples of a swing never have exactly this fraction, so rounding does not decide.
 const DECISIVE: f64 = 0.7;
 
 /// Estimated nanoseconds per sample and geodesic: some fifty passes.
 const SAMPLE_NANOSECONDS: usize = 300;
 
-/// What is to be fitted.
+/// Parameters of the fit.
 #[derive(Debug, Clone, Copy)]
 pub struct Params {
-    /// How many geodesics; 0 for as many as it takes until each joint's mean angle is at most `tolerance`.
+    /// Number of geodesics; 0 for as many as it takes until each joint's mean angle is at most `tolerance`.
     pub components: usize,
-    /// The most geodesics where `components` is 0.
+    /// Largest number of geodesics if `components` is 0.
     pub most: usize,
-    /// What directions minimise.
+    /// Objective of the directions.
     pub objective: Objective,
-    /// Radians of rotation.
+    /// Rotation angle, radians.
     pub tolerance: f64,
 }
 
 /// A geodesic of one joint.
 #[derive(Debug, Clone)]
 pub struct Component {
-    /// Unit vector. The first sample whose parameter is at least 0.7 of the greatest has a positive one.
+    /// Unit vector. The first sample whose parameter is at least 0.7 of the largest has a positive one.
     pub direction: [f64; 3],
-    /// Mean rotation angle that it and the ones before leave; NaN without samples.
+    /// Mean rotation angle of the residuals of this and all previous geodesics; NaN without samples.
     pub residual: f64,
-    /// The objective, of distances on S³, on the way to the direction; it never rises.
+    /// The objective, of distances on S³, at the steps of the descent; it never increases.
     pub descent: Vec<f64>,
 }
 
-/// One joint: what is left of its samples, and its last direction.
+/// One joint: the residuals of its samples, and its last direction.
 struct Joint {
     left: Samples,
     before: Option<[f64; 3]>,
@@ -69,7 +70,7 @@ struct Joint {
 /// Principal geodesics of each joint through `means`, `(joints, 4)`: for each component, one per joint.
 ///
 /// # Errors
-/// [`Error::Length`] if the means do not fit; [`Error::Interrupted`].
+/// [`Error::Length`] if the number of means is not that of the joints; [`Error::Interrupted`].
 pub fn principal_geodesics<T: Real>(
     clip: ClipView<'_, T>,
     means: &[T],
@@ -104,7 +105,7 @@ pub fn principal_geodesics<T: Real>(
 }
 
 impl Joint {
-    /// Fits a geodesic to what is left, and takes it away.
+    /// Fits a geodesic to the residuals, and removes it.
     fn next(&mut self, objective: Objective, interrupt: &Interrupt) -> Result<Component, Error> {
         let reach = self.reach(None, interrupt)?;
         let (mut direction, mut descent) = ([1.0, 0.0, 0.0], Vec::new());
@@ -122,7 +123,7 @@ impl Joint {
         Ok(Component { direction, residual, descent })
     }
 
-    /// The geodesic that is nearest to what is left, where the longest vector part has the length `reach`.
+    /// The geodesic nearest to the residuals; `reach` is the length of their longest vector part.
     fn nearest(&self, reach: f64, objective: Objective, interrupt: &Interrupt) -> Result<Found, Error> {
         let plane = match (objective, self.before) {
             (Objective::Geodesic, Some(before)) => Some(objective::basis(before)),
@@ -138,7 +139,7 @@ impl Joint {
         }
     }
 
-    /// The greatest length of a vector part, or of its component along an axis.
+    /// The largest length of a vector part, or of its component along an axis.
     fn reach(&self, axis: Option<[f64; 3]>, interrupt: &Interrupt) -> Result<f64, Error> {
         let parts = self.left.map(2, interrupt, |part, _| {
             let mut lanes = [0.0; LANES];
@@ -149,8 +150,8 @@ impl Joint {
     }
 }
 
-/// Direction of the geodesic that is nearest to the samples of one joint, and the objectives on the way; `before` is the last
-/// one.
+/// Direction of the geodesic nearest to the samples of one joint, and the objectives of the descent; `before` is the
+/// previous direction.
 pub(super) fn nearest_of_joint(
     samples: &[[f64; 4]],
     before: Option<[f64; 3]>,
@@ -162,7 +163,7 @@ pub(super) fn nearest_of_joint(
     Ok((found.direction, found.descent))
 }
 
-/// Whether the first sample whose parameter along a geodesic is great enough has a negative one.
+/// Whether the first sample whose parameter along a geodesic is large enough has a negative one.
 fn decides_against(samples: &Samples, v: [f64; 3], interrupt: &Interrupt) -> Result<bool, Error> {
     let parts = samples.map(4, interrupt, |part, _| {
         let mut parameters = vec![0.0; part[0].len()];

@@ -1,29 +1,29 @@
-//! How far samples lie from a geodesic through 1, as a function of its direction.
+//! Mean distance of samples from a geodesic through 1, as a function of its direction.
 //!
-//! With `p = v·u` a sample `(w, u)` lies at the distance `d` from the geodesic with the unit direction `v`, where
-//! `cos d = f = √(w² + p²)` and `sin d = |u × v|`. Where `v` moves away from `u/|u|` on the sphere of directions, `d` grows
-//! with the slope `p/f` and bends by `−w² sin d / f³`; across that way it bends by `p²/(f sin d)`.
+//! With `p = v·u` a sample `(w, u)` is at the distance `d` from the geodesic with the unit direction `v`, where `cos
+//! d = f = √(w² + p²)` and `sin d = |u × v|`. As `v` moves away from `u/|u|` on the sphere of directions, `d` grows
+//! with the slope `p/f` and has the curvature `−w² sin d / f³`; orthogonally the curvature is `p²/(f sin d)`.
 
 use super::samples::{LANES, Quad, Samples, cross, dot};
 use crate::parallel::Interrupt;
 use crate::simd::multiversion;
 use crate::{Error, Real};
 
-/// Sine of a distance: samples that are nearer lie on the geodesic.
+/// Sine of the distance below which a sample lies on the geodesic.
 pub(super) const ON_GEODESIC: f64 = 1e-14;
 
-/// Estimated nanoseconds per sample of a pass for a value, and of one for a slope.
+/// Estimated nanoseconds per sample of a pass for a value, and of a pass for a slope.
 const VALUE_NANOSECONDS: usize = 4;
 const SLOPE_NANOSECONDS: usize = 10;
 
-/// What the direction of a geodesic minimises: the mean over the samples of a function of the distance `d`.
+/// The objective of a direction: the mean over the samples of a function of the distance `d`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Objective {
     /// `d`: the paper's eq. (9).
     Geodesic,
     /// `d²`.
     Squared,
-    /// `1 − cos d`: what the paper's equations (11) and (13) belong to.
+    /// `1 − cos d`: the objective of the paper's equations (11) and (13).
     Chordal,
 }
 
@@ -38,10 +38,10 @@ pub(super) trait Shape {
     /// Its derivative, the derivative over the sine, and its second derivative; `over` is `1/sine`, or 0 at 0.
     fn derivatives(sine: f64, cosine: f64, over: f64) -> [f64; 3];
 
-    /// The greatest curvature downwards that a sample of length `r` of the vector part can have.
+    /// The largest downward curvature of a sample whose vector part has the length `r`.
     fn bend(w: f64, r: f64) -> f64;
 
-    /// The function at a distance, for distances that are 0 or more.
+    /// The function at a distance of at least 0.
     fn of_distance(d: f64) -> f64;
 }
 
@@ -112,7 +112,7 @@ impl Shape for Chordal {
     }
 }
 
-/// The vectorised sine and cosine under a name that the standard library's method does not take.
+/// The vectorised sine and cosine under a name that does not clash with the standard library's method.
 trait SinCos {
     fn sin_cos_real(self) -> (f64, f64);
 }
@@ -165,7 +165,7 @@ multiversion! {
         let [w, x, y, z] = samples.map(|plane| plane.as_chunks::<LANES>().0);
         for (((w, x), y), z) in w.iter().zip(x).zip(y).zip(z) {
             for c in 0..LANES {
-                let (_, sine, cosine) = place([w[c], x[c], y[c], z[c]], v);
+                let (_, sine, cosine) = project([w[c], x[c], y[c], z[c]], v);
                 sums[0][c] += S::value(sine, cosine);
             }
         }
@@ -173,15 +173,15 @@ multiversion! {
     }
 }
 
-/// `v·u`, and sine and cosine of the distance from the geodesic.
+/// `v·u`, and the sine and cosine of the distance from the geodesic.
 #[inline(always)]
-pub(super) fn place([w, x, y, z]: [f64; 4], v: [f64; 3]) -> (f64, f64, f64) {
+pub(super) fn project([w, x, y, z]: [f64; 4], v: [f64; 3]) -> (f64, f64, f64) {
     let across = cross([x, y, z], v);
     let p = dot([x, y, z], v);
     (p, dot(across, across).sqrt(), (w * w + p * p).sqrt())
 }
 
-/// Two unit vectors across the unit vector `v` and each other.
+/// Two unit vectors orthogonal to the unit vector `v` and to each other.
 pub(super) fn basis(v: [f64; 3]) -> [[f64; 3]; 2] {
     let least = (0..3).fold(0, |best, i| if v[i].abs() < v[best].abs() { i } else { best });
     let axis = std::array::from_fn(|i| if i == least { 1.0 } else { 0.0 });
@@ -189,26 +189,26 @@ pub(super) fn basis(v: [f64; 3]) -> [[f64; 3]; 2] {
     [first, cross(v, first)]
 }
 
-/// The same direction with length 1.
+/// The normalised vector.
 pub(super) fn scaled_to_one(v: [f64; 3]) -> [f64; 3] {
     let length = dot(v, v).sqrt();
     v.map(|x| x / length)
 }
 
-/// An objective at a direction, and how it changes there.
+/// An objective at a direction, with its derivatives.
 pub(super) struct Slope {
     pub(super) value: f64,
-    /// Along the basis; of the samples that do not lie on the geodesic.
+    /// Along the basis; of the samples that are not on the geodesic.
     pub(super) gradient: [f64; 2],
     /// Entries 00, 01 and 11, of the same samples.
     pub(super) hessian: [f64; 3],
-    /// Slope with which the objective grows on all sides for the samples that lie on the geodesic.
+    /// Slope of the objective in all directions due to the samples on the geodesic.
     pub(super) cone: f64,
     /// The sample whose direction is nearest.
     pub(super) nearest: Option<usize>,
 }
 
-/// Sums of a slope: value, gradient, curvature across, the 3 entries of the rest of the Hessian, cone.
+/// Sums of a slope: value, gradient, orthogonal curvature, the 3 other entries of the Hessian, cone.
 const SLOPE_SUMS: usize = 8;
 
 /// Objective at `v`, with its gradient and Hessian on the sphere of directions along the basis `across`.
@@ -259,7 +259,7 @@ multiversion! {
         for (((w, x), y), z) in w.iter().zip(x).zip(y).zip(z) {
             for c in 0..LANES {
                 let u = [x[c], y[c], z[c]];
-                let (p, sine, f) = place([w[c], x[c], y[c], z[c]], v);
+                let (p, sine, f) = project([w[c], x[c], y[c], z[c]], v);
                 let off = sine > ON_GEODESIC;
                 let over_sine = if off { 1.0 / sine } else { 0.0 };
                 let over_f = 1.0 / f;

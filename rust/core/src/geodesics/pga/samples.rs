@@ -1,4 +1,4 @@
-//! The rotations of one joint, seen from their centre: planes that every pass goes through.
+//! The rotations of one joint relative to their centre: planes that every pass reads.
 
 use crate::clip::Planes;
 use crate::parallel::{self, Interrupt};
@@ -7,20 +7,20 @@ use crate::simd::multiversion;
 use crate::{ClipView, Error, Real};
 use std::ops::Range;
 
-/// Sums side by side: two vectors of float64 at AVX2, one at AVX-512.
+/// Number of running sums: two vectors of float64 at AVX2, one at AVX-512.
 pub(super) const LANES: usize = 8;
 
-/// Samples per task: their planes stay in the second-level cache.
+/// Samples per task: their planes fit in the second-level cache.
 const TASK: usize = 8192;
 
-/// Samples on S³ with `w ≥ 0`, as planes `w`, `x`, `y`, `z`, filled up with ones to whole lanes.
+/// Samples on S³ with `w ≥ 0`, as planes `w`, `x`, `y`, `z`, padded with ones to whole lanes.
 #[derive(Debug)]
 pub(super) struct Samples {
     planes: Planes<f64>,
     count: usize,
 }
 
-/// A stretch of the four planes, whole lanes.
+/// A range of the four planes, in whole lanes.
 pub(super) type Quad<'a> = [&'a [f64]; 4];
 
 impl Samples {
@@ -34,7 +34,7 @@ impl Samples {
         Self { planes, count }
     }
 
-    /// The samples of a joint that are not missing, `mean⁻¹ q` in the half of S³ about 1.
+    /// The valid samples of a joint, `mean⁻¹ q` in the half of S³ about 1.
     pub(super) fn of_joint<T: Real>(clip: ClipView<'_, T>, joint: usize, mean: [f64; 4]) -> Self {
         let centre = unit(mean);
         let seen: Vec<[f64; 4]> = (0..clip.frames())
@@ -45,7 +45,7 @@ impl Samples {
         Self::filled(seen.len(), |i| upper(between(centre, unit(seen[i]))))
     }
 
-    /// About so many of the samples at most, evenly spread.
+    /// At most about `most` of the samples, evenly spaced.
     pub(super) fn subset(&self, most: usize) -> Self {
         let stride = self.count.div_ceil(most).max(1);
         Self::filled(self.count.div_ceil(stride), |i| self.at(i * stride))
@@ -55,7 +55,7 @@ impl Samples {
         self.count
     }
 
-    /// How many ones fill up the last lanes.
+    /// Number of padding ones.
     pub(super) fn filling(&self) -> usize {
         self.planes.length() - self.count
     }
@@ -69,7 +69,7 @@ impl Samples {
         self.planes.rows_from(0)
     }
 
-    /// Runs `work` on stretches of the samples that begin at multiples of [`LANES`], and returns what it returns in their order.
+    /// Runs `work` on ranges of the samples that begin at multiples of [`LANES`], and returns its results in order.
     pub(super) fn map<R: Send>(
         &self,
         nanoseconds: usize,
@@ -85,7 +85,7 @@ impl Samples {
         })
     }
 
-    /// Adds up what `work` adds to `N` rows of lanes.
+    /// Sums `N` rows of lanes to which `work` adds.
     pub(super) fn sums<const N: usize>(
         &self,
         nanoseconds: usize,
@@ -100,7 +100,7 @@ impl Samples {
         Ok(parts.iter().fold([0.0; N], |total, part| std::array::from_fn(|i| total[i] + part[i])))
     }
 
-    /// Leaves what the geodesic with the direction `v` leaves of each sample.
+    /// Replaces each sample by its residual from the geodesic with the direction `v`.
     pub(super) fn take_away(&mut self, v: [f64; 3], interrupt: &Interrupt) -> Result<(), Error> {
         let length = self.planes.length();
         let mut rest = self.planes.rows_mut::<4>(0);
@@ -126,7 +126,7 @@ impl Samples {
         Ok(2.0 * sum / self.count as f64)
     }
 
-    /// Greatest rotation angle of the samples; 0 without any.
+    /// Largest rotation angle of the samples; 0 without any.
     pub(super) fn greatest_angle(&self, interrupt: &Interrupt) -> Result<f64, Error> {
         let parts = self.map(3, interrupt, |samples, _| {
             let mut most = [[0.0; LANES]; 1];
@@ -143,7 +143,7 @@ pub(super) fn upper(q: [f64; 4]) -> [f64; 4] {
     q.map(|x| x * 1.0_f64.copysign(q[0]))
 }
 
-/// What the geodesic with the direction `v` leaves of a sample, `c_v(s*)⁻¹ x`.
+/// The residual of a sample from the geodesic with the direction `v`, `c_v(s*)⁻¹ x`.
 #[inline(always)]
 pub(super) fn left_of([w, x, y, z]: [f64; 4], v: [f64; 3]) -> [f64; 4] {
     let p = x * v[0] + y * v[1] + z * v[2];
@@ -159,7 +159,7 @@ pub(super) fn left_of([w, x, y, z]: [f64; 4], v: [f64; 3]) -> [f64; 4] {
     ])
 }
 
-/// Vector product.
+/// Cross product.
 #[inline(always)]
 pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]

@@ -1,4 +1,4 @@
-//! Parameters along geodesics, and rotations of parameters.
+//! Parameters along geodesics, and rotations from parameters.
 
 use super::samples::{left_of, upper};
 use crate::error::check_length;
@@ -10,7 +10,7 @@ use crate::{ClipView, Error, Real};
 /// Frames per task.
 const TASK: usize = 512;
 
-/// Frames side by side: they become vectors.
+/// Frames per vector operation.
 const LANES: usize = 16;
 
 /// Fitted geodesics of all joints.
@@ -23,7 +23,7 @@ pub struct Geodesics<'a, T> {
 }
 
 impl<T: Real> Geodesics<'_, T> {
-    /// How many geodesics each joint has.
+    /// Number of geodesics per joint.
     fn components(self, joints: usize) -> Result<usize, Error> {
         check_length("means", joints * 4, self.means.len())?;
         let components = self.directions.len() / (joints * 3).max(1);
@@ -45,7 +45,7 @@ impl<T: Real> Geodesics<'_, T> {
 /// Radians of rotation in `[−π, π]`; NaN for missing samples.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit; [`Error::Interrupted`].
+/// [`Error::Length`] if the lengths of slices do not agree; [`Error::Interrupted`].
 pub fn geodesic_scores<T: Real>(
     clip: ClipView<'_, T>,
     geodesics: Geodesics<'_, T>,
@@ -92,7 +92,7 @@ pub fn geodesic_scores<T: Real>(
 }
 
 multiversion! {
-    /// Parameters along the geodesic with the direction `v`, and what it leaves.
+    /// Parameters along the geodesic with the direction `v`; replaces the rotations by their residuals.
     fn project(x: &mut [[f64; LANES]; 4], v: [f64; 3], scores: &mut [f64; LANES]) {
         for c in 0..LANES {
             let at = [x[0][c], x[1][c], x[2][c], x[3][c]];
@@ -107,7 +107,7 @@ multiversion! {
 /// Rotations `mean · c_{v_1}(s_1) · c_{v_2}(s_2) · …` with `w ≥ 0`, `(frames, joints, k)` → `(frames, joints, 4)`.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit; [`Error::Interrupted`].
+/// [`Error::Length`] if the lengths of slices do not agree; [`Error::Interrupted`].
 pub fn geodesic_product<T: Real>(
     scores: &[T],
     joints: usize,
@@ -138,7 +138,7 @@ pub fn geodesic_product<T: Real>(
                         let row = (task * TASK + first + c) * joints + joint;
                         *angle = scores[row * k + component].to_f64() / 2.0;
                     }
-                    turn(&mut q, geodesics.axis(component, joints, joint), &angles);
+                    rotate(&mut q, geodesics.axis(component, joints, joint), &angles);
                 }
                 let [w, x, y, z] = &q;
                 for (c, (((w, x), y), z)) in w.iter().zip(x).zip(y).zip(z).enumerate().take(count) {
@@ -153,7 +153,7 @@ pub fn geodesic_product<T: Real>(
 
 multiversion! {
     /// Multiplies rotations by `c_v(s)`.
-    fn turn(q: &mut [[f64; LANES]; 4], v: [f64; 3], angles: &[f64; LANES]) {
+    fn rotate(q: &mut [[f64; LANES]; 4], v: [f64; 3], angles: &[f64; LANES]) {
         for c in 0..LANES {
             let (sine, cosine) = Real::sin_cos(angles[c]);
             let factor = [cosine, sine * v[0], sine * v[1], sine * v[2]];

@@ -1,50 +1,51 @@
-//! The direction of the nearest geodesic, sought on the whole sphere of directions.
+//! Global search for the direction of the nearest geodesic on the whole sphere of directions.
 //!
-//! Branch and bound leaves no valley out. The half sphere is a cube's three faces, cut into squares. Within `δ` of the middle
-//! `c` of a square a sample's distance changes by no more than `δ·r`, `r = |u|`, and, where it has no cone point there, it
-//! bends down by no more than `r/w`, so that the mean over such samples is at least `F(c) − |∇F(c)| δ − M δ²/2`, `M` the
-//! mean of `r/w`. Squares that cannot hold anything lower than what a descent has found are dropped, the others cut into
-//! four.
+//! Branch and bound finds every local minimum that matters. The half sphere is projected on three faces of a cube,
+//! which are divided into squares. Within `δ` of the centre `c` of a square a sample's distance changes by at most
+//! `δ·r`, `r = |u|`. Without a cone point in the square its downward curvature is at most `r/w`. So the mean over
+//! such samples is at least `F(c) − |∇F(c)| δ − M δ²/2`, where `M` is the mean of `r/w`. Squares whose bound exceeds
+//! the result of a descent are dropped; the others are divided into four.
 
 use super::descent::{Found, descent};
-use super::objective::{Objective, Shape, by_shape, place, scaled_to_one, value};
+use super::objective::{Objective, Shape, by_shape, project, scaled_to_one, value};
 use super::samples::{LANES, Quad, Samples, dot};
 use crate::eigen::eigenvectors;
 use crate::parallel::{self, Interrupt};
 use crate::simd::multiversion;
 use crate::{Error, Real};
 
-/// Samples, at most, on which valleys are sought; what is found there descends over all samples.
+/// Largest number of samples for the search; its results descend over all samples.
 const SUBSET: usize = 512;
 
-/// Squares along the edge of a face, at first.
+/// Squares along the edge of a face at the start.
 const SQUARES: usize = 4;
 
-/// Cuts at most: squares are then a hundredth of a degree wide, and one valley wide.
+/// Largest number of divisions: squares are then a hundredth of a degree wide, narrower than a minimum.
 const LEVELS: usize = 12;
 
-/// Squares at once: where more are left, the floor is flat along a line, and any of its points will do.
+/// Largest number of squares at once: with more of them the minimum is flat along a line, and any of its points will
+/// do.
 const MOST_SQUARES: usize = 4096;
 
-/// Relative: how much lower than what was found a valley may be and be left out.
+/// Relative tolerance: a region is pruned unless it can improve the best value by more than this.
 const ENOUGH: f64 = 1e-7;
 
-/// Slope that a sample's curvature may add within a square. Beyond, its distance is bounded by its slope alone.
+/// Slope that a sample's curvature may add within a square. Above it the distance is bounded by its slope alone.
 const BENT: f64 = 1.0;
 
-/// Cosine of two degrees: directions that are nearer end in the same valley.
+/// Cosine of two degrees: nearer directions descend to the same minimum.
 const APART: f64 = 0.999_390_827_019_095_8;
 
-/// Directions that descend over all samples.
+/// Number of directions that descend over all samples.
 const DESCENTS: usize = 3;
 
-/// Squares of the first cut whose middles descend on the subset.
+/// Number of squares of the first division whose centres descend on the subset.
 const ENTRIES: usize = 4;
 
 /// Directions per task.
 const TASK: usize = 16;
 
-/// Direction with the lowest objective; the samples are not all 1.
+/// Direction with the lowest objective; not all samples may be 1.
 pub(super) fn nearest_geodesic(
     samples: &Samples,
     objective: Objective,
@@ -68,7 +69,7 @@ pub(super) fn nearest_geodesic(
     Ok(best.unwrap_or(Found { direction: [1.0, 0.0, 0.0], descent: Vec::new() }))
 }
 
-/// The directions with the lowest values, so many at most, each apart from the others.
+/// At most `most` directions with the lowest values, with a minimum distance from each other.
 fn lowest(mut tried: Vec<(f64, [f64; 3])>, most: usize) -> Vec<[f64; 3]> {
     tried.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut chosen: Vec<[f64; 3]> = Vec::new();
@@ -80,7 +81,7 @@ fn lowest(mut tried: Vec<(f64, [f64; 3])>, most: usize) -> Vec<[f64; 3]> {
     chosen
 }
 
-/// Directions that formulas suggest: principal axes of the vector parts and of the logarithms, and the paper's eq. (14).
+/// Closed-form candidates: principal axes of the vector parts and of the logarithms, and the paper's eq. (14).
 fn suggested_directions(samples: &Samples, interrupt: &Interrupt) -> Result<[[f64; 3]; 7], Error> {
     let [a, b, c] = principal_axes(samples, false, interrupt)?;
     let [d, e, f] = principal_axes(samples, true, interrupt)?;
@@ -89,7 +90,7 @@ fn suggested_directions(samples: &Samples, interrupt: &Interrupt) -> Result<[[f6
     Ok([a, b, c, d, e, f, if length > 0.0 { scaled_to_one(total) } else { a }])
 }
 
-/// Eigenvectors of `Σ y yᵀ`, the greatest first, of the vector parts or the logarithms `y`.
+/// Eigenvectors of `Σ y yᵀ` in descending order, of the vector parts or the logarithms `y`.
 pub(super) fn principal_axes(
     samples: &Samples,
     logarithms: bool,
@@ -104,7 +105,7 @@ pub(super) fn principal_axes(
     Ok(order.map(|column| std::array::from_fn(|i| vectors[i * 3 + column])))
 }
 
-/// A square on a face of the cube: the face, and the middle on it.
+/// A square on a face of the cube: the face, and the centre on it.
 #[derive(Debug, Clone, Copy)]
 struct Square {
     face: usize,
@@ -112,7 +113,7 @@ struct Square {
 }
 
 impl Square {
-    /// The direction to the middle, for a cube along `axes`.
+    /// The direction of the centre, for a cube along `axes`.
     fn direction(self, axes: &[[f64; 3]; 3]) -> [f64; 3] {
         let mut point = [1.0; 3];
         point[(self.face + 1) % 3] = self.middle[0];
@@ -122,7 +123,7 @@ impl Square {
     }
 }
 
-/// Directions at the bottom of valleys, the lowest of all among them.
+/// Directions of local minima, the lowest of all among them.
 fn valleys(samples: &Samples, objective: Objective, interrupt: &Interrupt) -> Result<Vec<[f64; 3]>, Error> {
     let axes = principal_axes(samples, false, interrupt)?;
     let mut suggested = Vec::new();
@@ -175,10 +176,10 @@ fn quarters(square: Square, half: f64) -> [Square; 4] {
         .map(|by| Square { middle: [square.middle[0] + by[0], square.middle[1] + by[1]], ..square })
 }
 
-/// Sums of a bound: the objective, the gradient, `Σ pull·p`, the objective or what it is at least, the bends.
+/// Sums of a bound: the objective, the gradient, `Σ pull·p`, the objective or its lower bound, the curvatures.
 const BOUND_SUMS: usize = 7;
 
-/// Objectives at directions, and what they are at least within `reach` radians of them.
+/// Objectives at directions, and their lower bounds within `reach` radians.
 fn lower_bounds(
     samples: &Samples,
     directions: &[[f64; 3]],
@@ -213,7 +214,7 @@ multiversion! {
         for (((w, x), y), z) in w.iter().zip(x).zip(y).zip(z) {
             for c in 0..LANES {
                 let u = [x[c], y[c], z[c]];
-                let (p, sine, f) = place([w[c], x[c], y[c], z[c]], v);
+                let (p, sine, f) = project([w[c], x[c], y[c], z[c]], v);
                 let r = dot(u, u).sqrt();
                 let bend = S::bend(w[c], r);
                 let near = S::CONE & (p.abs() >= r * cosine);

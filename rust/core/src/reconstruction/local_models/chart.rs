@@ -1,4 +1,4 @@
-//! The chart of some examples: rotations of poses as vectors.
+//! The chart of the examples: rotations of poses as rotation vectors.
 
 use super::LANE;
 use super::dense::{Matrix, halves};
@@ -7,10 +7,11 @@ use crate::clip::Planes;
 use crate::rotations::quaternion::{between, dot, log_short, of_row, unit};
 use crate::simd::multiversion;
 
-/// Charts of all joints, and the rotation vectors of the examples in them, a row for each coordinate: those of the frames before
-/// the last one, and those of the last. Each are followed by so many rows of zeros as `more` says.
+/// Charts of all joints and the examples' rotation vectors in them, one row per coordinate: first the frames before
+/// the last, then the last frame. `more` is the number of zero rows appended to each.
 ///
-/// A chart touches where the renormalised mean of all poses lies, with signs as seen from the first example's last pose but one.
+/// The centre of a chart is the normalised mean of all poses, with signs relative to the first example's last pose
+/// but one.
 pub(super) fn vectors<T: Real>(
     segments: &[T],
     (count, frames, joints): (usize, usize, usize),
@@ -51,7 +52,7 @@ pub(super) fn vectors<T: Real>(
 }
 
 multiversion! {
-    /// Adds rotations to `sums`, with signs as seen from one of them. What stands beyond the examples is zero.
+    /// Adds quaternions to `sums`, with signs relative to `from`. The padding beyond the examples is zero.
     fn add_alike(rows: &[f64], from: [f64; 4], sums: &mut [[f64; LANE]; 4]) {
         let width = rows.len() / 4;
         for left in (0..width).step_by(LANE) {
@@ -77,7 +78,7 @@ fn quarters(rows: &[f64], width: usize, left: usize) -> [[f64; LANE]; 4] {
     q
 }
 
-/// Rotation vector `2 log(c⁻¹ q)`, the shorter way.
+/// Rotation vector `2 log(c⁻¹ q)` of the shorter rotation.
 #[inline(always)]
 fn vector(chart: [f64; 4], q: [f64; 4]) -> [f64; 3] {
     let half = log_short(between(chart, q));
@@ -85,7 +86,7 @@ fn vector(chart: [f64; 4], q: [f64; 4]) -> [f64; 3] {
 }
 
 multiversion! {
-    /// Rotation vectors of four rows of components, as three rows. What stands beyond the examples is finite.
+    /// Rotation vectors of four rows of components, as three rows. The values in the padding are finite.
     fn write_vectors(rows: &[f64], chart: [f64; 4], out: &mut [f64]) {
         let width = rows.len() / 4;
         for left in (0..width).step_by(LANE) {
@@ -104,7 +105,7 @@ multiversion! {
     }
 }
 
-/// Rotation vectors of poses in sequence.
+/// Rotation vectors of consecutive poses.
 pub(super) fn of_poses<T: Real>(poses: &[T], chart: &[[f64; 4]]) -> Vec<f64> {
     let (rotations, _) = poses.as_chunks::<4>();
     let seen = |(place, q): (usize, &[T; 4])| vector(chart[place % chart.len()], of_row(q).map(T::to_f64));

@@ -9,10 +9,10 @@ use crate::simd::multiversion;
 /// Rows whose sums stay in registers together.
 const PAIR: usize = 2;
 
-/// Rows that are multiplied with each other while they stay in the first-level cache.
+/// Rows that are multiplied with each other while they are in the first-level cache.
 const TOGETHER: usize = 32;
 
-/// A matrix in rows, each padded to whole lanes.
+/// A row-major matrix with rows padded to whole lanes.
 #[derive(Debug)]
 pub(super) struct Matrix {
     data: Planes<f64>,
@@ -62,7 +62,7 @@ impl Matrix {
         self.data_mut()[at] = x;
     }
 
-    /// Itself less a multiple of another.
+    /// This matrix minus a multiple of another.
     pub(super) fn less(&self, other: &Self, factor: f64) -> Self {
         let mut out = self.copy();
         for (x, y) in out.data_mut().iter_mut().zip(other.data()) {
@@ -113,10 +113,10 @@ impl Matrix {
         }
     }
 
-    /// `RᵀR` of its rows: the products of its columns.
+    /// `RᵀR`: the inner products of its columns.
     pub(super) fn gram(&self) -> Self {
         let mut gram = Self::new(self.columns, self.columns);
-        // The pairs of rows may reach beyond the last one, which is padded like the rows themselves.
+        // Pairs of rows may extend past the last row, which is padded like the rows themselves.
         let mut square = Planes::new(1, self.width * self.width);
         for rows in self.data().chunks(TOGETHER * self.width) {
             add_products(rows, self.width, square.row_mut(0));
@@ -131,7 +131,7 @@ impl Matrix {
         gram
     }
 
-    /// Its rows times a symmetric matrix.
+    /// This matrix times a symmetric matrix.
     pub(super) fn times(&self, symmetric: &Self) -> Self {
         let mut out =
             Self { data: Planes::new(1, self.data().len()), width: self.width, columns: self.columns };
@@ -139,7 +139,7 @@ impl Matrix {
         out
     }
 
-    /// Inverts a symmetric positive matrix in place: for those, eliminations need no choice of pivots.
+    /// Inverts a symmetric positive definite matrix in place. Such matrices need no pivoting.
     pub(super) fn invert(&mut self, interrupt: &Interrupt) -> Result<(), Error> {
         let (width, columns) = (self.width, self.columns);
         let mut copy = vec![0.0; width];
@@ -152,7 +152,7 @@ impl Matrix {
 }
 
 multiversion! {
-    /// Adds products `Σ_t x_t x_tᵀ` of rows, from the diagonal on to the right.
+    /// Adds the products `Σ_t x_t x_tᵀ` of rows to the upper triangle.
     fn add_products(rows: &[f64], width: usize, matrix: &mut [f64]) {
         for top in (0..width).step_by(PAIR) {
             for left in (top / LANE * LANE..width).step_by(LANE) {
@@ -181,7 +181,7 @@ multiversion! {
     /// Each row of `rows` times a matrix.
     fn multiply(rows: &[f64], matrix: &[f64], width: usize, out: &mut [f64]) {
         for (rows, out) in rows.chunks(PAIR * width).zip(out.chunks_mut(PAIR * width)) {
-            // A last row without a second one is computed twice.
+            // With an odd number of rows the last one is computed twice.
             let second = rows.len() - width;
             for left in (0..width).step_by(LANE) {
                 let mut sums = [[0.0; LANE]; PAIR];
@@ -203,7 +203,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// One step of Gauss and Jordan's elimination in place, with `copy` as memory for a row.
+    /// One step of Gauss–Jordan elimination in place; `copy` is scratch memory for one row.
     fn eliminate(matrix: &mut [f64], width: usize, pivot: usize, copy: &mut [f64]) {
         let row = &mut matrix[pivot * width..][..width];
         let inverse = 1.0 / row[pivot];
@@ -237,7 +237,7 @@ pub(super) fn inner(a: &[f64], b: &[f64]) -> f64 {
     halves(sums)
 }
 
-/// The sum of a lane, by halves.
+/// The sum of a lane, by repeated halving.
 #[inline(always)]
 pub(super) fn halves(mut sums: [f64; LANE]) -> f64 {
     let mut half = LANE / 2;

@@ -1,30 +1,31 @@
-//! Eigenvectors of symmetric matrices of up to some hundred rows: Householder's reflections to a tridiagonal matrix, and Francis'
-//! implicit QL steps with Wilkinson's shift (Golub and Van Loan, Matrix Computations, 8.3). Jacobi's rotations take ten times as long.
+//! Eigenvectors of symmetric matrices of up to some hundred rows: Householder reflections to tridiagonal form, then
+//! Francis' implicit QL steps with Wilkinson's shift (Golub and Van Loan, Matrix Computations, 8.3). Jacobi's method
+//! takes ten times as long.
 
 use super::dense::Matrix;
 use crate::Error;
 use crate::parallel::Interrupt;
 use crate::simd::multiversion;
 
-/// Steps at most for each eigenvalue; two are usual.
+/// Largest number of steps per eigenvalue; two are usual.
 const STEPS: usize = 40;
 
-/// Eigenvalues and, in rows, their vectors.
+/// Eigenvalues and, in rows, the eigenvectors.
 #[derive(Debug)]
 pub(super) struct Eigen {
     pub(super) values: Vec<f64>,
     pub(super) vectors: Matrix,
 }
 
-/// All eigenvalues of a symmetric matrix, the largest first.
+/// All eigenvalues of a symmetric matrix, in descending order, with their eigenvectors.
 pub(super) fn eigen(mut matrix: Matrix, interrupt: &Interrupt) -> Result<Eigen, Error> {
     let n = matrix.columns();
     let mut vectors = Matrix::new(n, n);
     for i in 0..n {
         vectors.set(i, i, 1.0);
     }
-    let (mut values, mut beside) = tridiagonal(&mut matrix, &mut vectors, interrupt)?;
-    diagonal(&mut values, &mut beside, &mut vectors, interrupt)?;
+    let (mut values, mut off_diagonal) = tridiagonal(&mut matrix, &mut vectors, interrupt)?;
+    diagonal(&mut values, &mut off_diagonal, &mut vectors, interrupt)?;
     let mut order: Vec<usize> = (0..n).collect();
     order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
     let mut sorted = Matrix::new(n, n);
@@ -35,26 +36,27 @@ pub(super) fn eigen(mut matrix: Matrix, interrupt: &Interrupt) -> Result<Eigen, 
     Ok(Eigen { values: order.iter().map(|&i| values[i]).collect(), vectors: sorted })
 }
 
-/// Reflects to a tridiagonal matrix: its diagonal, and what stands beside it. `vectors` are reflected from the left.
+/// Reduces to tridiagonal form and returns the diagonal and the off-diagonal. `vectors` are reflected from the left.
 fn tridiagonal(
     matrix: &mut Matrix,
     vectors: &mut Matrix,
     interrupt: &Interrupt,
 ) -> Result<(Vec<f64>, Vec<f64>), Error> {
     let (n, width) = (matrix.columns(), matrix.width());
-    let mut beside = vec![0.0; n];
+    let mut off_diagonal = vec![0.0; n];
     let mut normal = vec![0.0; width];
     let mut image = vec![0.0; width];
     for k in 0..n.saturating_sub(2) {
         interrupt.check()?;
         normal.fill(0.0);
         normal[k + 1..n].copy_from_slice(&matrix.data()[k * width + k + 1..k * width + n]);
+        // Householder reflection that zeroes row k beyond the off-diagonal element.
         let length = normal.iter().map(|x| x * x).sum::<f64>().sqrt();
         if length == 0.0 {
             continue;
         }
-        beside[k] = -length.copysign(normal[k + 1]);
-        normal[k + 1] -= beside[k];
+        off_diagonal[k] = -length.copysign(normal[k + 1]);
+        normal[k + 1] -= off_diagonal[k];
         let scale = (2.0 / normal.iter().map(|x| x * x).sum::<f64>()).sqrt();
         for x in &mut normal {
             *x *= scale;
@@ -74,9 +76,9 @@ fn tridiagonal(
         subtract(&mut vectors.data_mut()[(k + 1) * width..], &normal[k + 1..n], &image);
     }
     if n > 1 {
-        beside[n - 2] = matrix.at(n - 2, n - 1);
+        off_diagonal[n - 2] = matrix.at(n - 2, n - 1);
     }
-    Ok(((0..n).map(|i| matrix.at(i, i)).collect(), beside))
+    Ok(((0..n).map(|i| matrix.at(i, i)).collect(), off_diagonal))
 }
 
 multiversion! {
@@ -92,7 +94,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Takes multiples of `other` away from rows.
+    /// Subtracts multiples of `other` from rows.
     fn subtract(rows: &mut [f64], factors: &[f64], other: &[f64]) {
         let width = other.len();
         for (row, factor) in rows.chunks_exact_mut(width).zip(factors) {
@@ -103,35 +105,36 @@ multiversion! {
     }
 }
 
-/// Turns a tridiagonal matrix into a diagonal one; the rows of `vectors` turn with it.
+/// Diagonalises a tridiagonal matrix; the rows of `vectors` are rotated along with it.
 fn diagonal(
     values: &mut [f64],
-    beside: &mut [f64],
+    off_diagonal: &mut [f64],
     vectors: &mut Matrix,
     interrupt: &Interrupt,
 ) -> Result<(), Error> {
     let n = values.len();
-    let size = values.iter().chain(&*beside).fold(0.0_f64, |size, x| size.max(x.abs()));
+    let size = values.iter().chain(&*off_diagonal).fold(0.0_f64, |size, x| size.max(x.abs()));
     let enough = f64::EPSILON * size;
     for low in 0..n {
         for _ in 0..STEPS {
             interrupt.check()?;
-            let Some(high) = (low..n).find(|&i| i == n - 1 || beside[i].abs() <= enough) else { break };
+            let Some(high) = (low..n).find(|&i| i == n - 1 || off_diagonal[i].abs() <= enough) else { break };
             if high == low {
                 break;
             }
-            let ahead = (values[low + 1] - values[low]) / (2.0 * beside[low]);
+            // Wilkinson's shift, then a sweep of Givens rotations from `high` to `low` that chases the bulge.
+            let ahead = (values[low + 1] - values[low]) / (2.0 * off_diagonal[low]);
             let root = (ahead * ahead + 1.0).sqrt().copysign(ahead);
-            let mut bulge = values[high] - values[low] + beside[low] / (ahead + root);
+            let mut bulge = values[high] - values[low] + off_diagonal[low] / (ahead + root);
             let (mut sine, mut cosine, mut moved) = (1.0, 1.0, 0.0);
             let mut whole = true;
             for i in (low..high).rev() {
-                let (f, b) = (sine * beside[i], cosine * beside[i]);
+                let (f, b) = (sine * off_diagonal[i], cosine * off_diagonal[i]);
                 let length = (f * f + bulge * bulge).sqrt();
-                beside[i + 1] = length;
+                off_diagonal[i + 1] = length;
                 if length == 0.0 {
                     values[i + 1] -= moved;
-                    beside[high] = 0.0;
+                    off_diagonal[high] = 0.0;
                     whole = false;
                     break;
                 }
@@ -147,8 +150,8 @@ fn diagonal(
             }
             if whole {
                 values[low] -= moved;
-                beside[low] = bulge;
-                beside[high] = 0.0;
+                off_diagonal[low] = bulge;
+                off_diagonal[high] = 0.0;
             }
         }
     }

@@ -1,4 +1,4 @@
-//! The examples of a local model, weighted and about their means.
+//! The examples of a local model, weighted and centred.
 
 use super::dense::{Matrix, inner};
 use super::{LANE, Options};
@@ -6,47 +6,48 @@ use crate::parallel::Interrupt;
 use crate::simd::multiversion;
 use crate::{Error, Real};
 
-/// Squared radians that stand for no distance: what roundings of float32 make of a pose of a hundred numbers. It scales weights
-/// where half of the examples are at no distance; examples that are no further from each other are equal.
+/// Squared radians that count as zero distance: the size of float32 rounding errors for a pose of a hundred
+/// coordinates. It scales the weights if half of the examples have no distance; examples no farther from each other
+/// count as equal.
 pub(super) const LEAST_SQUARE: f64 = 1e-12;
 
-/// In shares of all: thousands of roundings of float64 for each of a thousand examples.
+/// Smallest relative remainder: thousands of float64 rounding errors for each of a thousand examples.
 pub(super) const LEAST_LEFT: f64 = 1e-9;
 
 /// Examples in the scale of their weights: column k is `√ω_k` times the difference from the mean.
 #[derive(Debug)]
 pub(super) struct Examples {
-    /// `ω_k`, the nearest example's being 1, and their roots; padded.
+    /// The weights `ω_k`, the nearest example's being 1, and their square roots; padded.
     pub(super) weights: Vec<f64>,
     pub(super) roots: Vec<f64>,
     pub(super) total: f64,
-    /// The nearest example.
+    /// Index of the nearest example.
     pub(super) nearest: usize,
-    /// A row for each output.
+    /// One row per output.
     pub(super) outputs: Matrix,
     pub(super) output_mean: Vec<f64>,
     /// `G`: inner products of the inputs.
     pub(super) gram: Matrix,
-    /// Inner products of the inputs with the query, padded, and the square of the query's length.
-    pub(super) shadow: Vec<f64>,
+    /// Inner products of the inputs with the query, padded; and the query's squared length.
+    pub(super) query_products: Vec<f64>,
     square: f64,
     /// `λ`.
     pub(super) ridge: f64,
 }
 
-/// `(G + λ I)⁻¹`, and what follows from it.
+/// `(G + λ I)⁻¹`, and quantities derived from it.
 #[derive(Debug)]
 pub(super) struct Ridge {
     pub(super) inverse: Matrix,
     /// Its diagonal, padded.
     pub(super) diagonal: Vec<f64>,
-    /// `λ + x²`, where x is the part of the query that the examples do not show.
+    /// `λ + x²`, where x is the length of the query's component outside the span of the examples.
     pub(super) unseen: f64,
 }
 
 impl Examples {
-    /// Weighs examples by their distance from the query, and takes their means away. The rows of `inputs` and `outputs` are
-    /// coordinates, `scale` is the diagonal of W.
+    /// Weights the examples by their distance from the query, and subtracts their weighted means. The rows of
+    /// `inputs` and `outputs` are coordinates; `scale` is the diagonal of W.
     pub(super) fn gather(
         mut inputs: Matrix,
         mut outputs: Matrix,
@@ -60,6 +61,7 @@ impl Examples {
         let mut sorted = squares[..count].to_vec();
         sorted.sort_unstable_by(f64::total_cmp);
         let least = sorted[0];
+        // The bandwidth defaults to the median distance.
         let spread =
             if options.bandwidth == 0.0 { sorted[count / 2] } else { options.bandwidth * options.bandwidth };
         let spread = spread.max(LEAST_SQUARE);
@@ -79,45 +81,45 @@ impl Examples {
             *x -= mean;
         }
         let mut gram = inputs.gram();
-        let mut shadow = vec![0.0; width];
-        add_multiples(inputs.data(), &query, &mut shadow);
+        let mut query_products = vec![0.0; width];
+        add_multiples(inputs.data(), &query, &mut query_products);
         let variance = gram.diagonal().iter().sum::<f64>() / count as f64;
         let equal = variance < LEAST_SQUARE;
         if equal {
             gram.data_mut().fill(0.0);
-            shadow.fill(0.0);
+            query_products.fill(0.0);
         }
-        // Of equal examples any ridge will do: 1 leaves no roundings.
+        // For equal examples any ridge gives the same result; 1 avoids rounding errors.
         let ridge = if equal { 1.0 } else { options.ridge * variance };
         let square = query.iter().map(|x| x * x).sum();
-        Self { weights, roots, total, nearest, outputs, output_mean, gram, shadow, square, ridge }
+        Self { weights, roots, total, nearest, outputs, output_mean, gram, query_products, square, ridge }
     }
 
-    /// How many.
+    /// Number of examples.
     pub(super) fn count(&self) -> usize {
         self.gram.columns()
     }
 
-    /// Whether one example has all of the weight, so that there is nothing to learn from.
+    /// Whether one example has all of the weight, so that no regression is possible.
     pub(super) fn alone(&self) -> bool {
         self.total - self.weights[self.nearest] < LEAST_LEFT * self.total
     }
 
-    /// Solves the ridge regression's dual for all outputs at once.
+    /// Solves the dual of the ridge regression for all outputs at once.
     pub(super) fn solve(&self, interrupt: &Interrupt) -> Result<Ridge, Error> {
         let mut inverse = self.gram.copy();
         inverse.add_to_diagonal(self.ridge);
         inverse.invert(interrupt)?;
         let diagonal = inverse.diagonal();
-        let mut solution = vec![0.0; self.shadow.len()];
-        add_multiples(inverse.data(), &self.shadow[..self.count()], &mut solution);
-        let seen = inner(&self.shadow, &solution);
+        let mut solution = vec![0.0; self.query_products.len()];
+        add_multiples(inverse.data(), &self.query_products[..self.count()], &mut solution);
+        let seen = inner(&self.query_products, &solution);
         let unseen = self.ridge + (self.square - seen).max(0.0);
         Ok(Ridge { inverse, diagonal, unseen })
     }
 }
 
-/// Weights, their roots and their sum.
+/// Weights, their square roots and their sum.
 #[derive(Debug, Clone, Copy)]
 struct Centre<'a> {
     weights: &'a [f64],
@@ -126,7 +128,7 @@ struct Centre<'a> {
 }
 
 multiversion! {
-    /// Adds the squared differences of rows from a query, each scaled.
+    /// Writes the scaled squared distances of the columns from a query.
     fn add_squares(rows: &[f64], query: &[f64], scale: &[f64], squares: &mut [f64]) {
         let width = squares.len();
         for left in (0..width).step_by(LANE) {
@@ -144,7 +146,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Takes the weighted mean of each row away from it, and multiplies by the roots of the weights.
+    /// Subtracts the weighted mean of each row, and multiplies by the square roots of the weights.
     fn about_means(rows: &mut [f64], centre: Centre<'_>, means: &mut [f64]) {
         let width = centre.weights.len();
         for (row, mean) in rows.chunks_exact_mut(width).zip(means) {
@@ -157,7 +159,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Adds multiples of rows.
+    /// Adds multiples of rows to `sums`.
     fn add_multiples(rows: &[f64], factors: &[f64], sums: &mut [f64]) {
         let width = sums.len();
         for (row, factor) in rows.chunks_exact(width).zip(factors) {

@@ -1,7 +1,8 @@
-//! Local models: the next pose from the last ones, learned from the few examples that are most like them.
+//! Local models: predict the next pose from the previous ones by a model of the nearest examples.
 //!
-//! Poses are rotation vectors in radians in a chart at the examples' mean; a pose of J joints with R numbers of the root has
-//! `D = 3J + R` outputs. With K examples of m poses each model is a matter of the `K × K` inner products of the inputs.
+//! Poses are rotation vectors in radians in a chart at the examples' mean. A pose of J joints with R coordinates of
+//! the root has `D = 3J + R` outputs. With K examples of m poses each, every model needs only the `K × K` inner
+//! products of the inputs.
 
 mod chart;
 mod dense;
@@ -18,13 +19,14 @@ use dense::Matrix;
 pub use deviations::{LEAST_DEVIATION, UNKNOWN_DEVIATION};
 use examples::Examples;
 
-/// Examples that go through arithmetic together; rows are padded to a multiple.
+/// Examples that one vector operation handles; rows are padded to a multiple.
 const LANE: usize = 16;
 
-/// How the next pose is predicted.
+/// Model that predicts the next pose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Model {
-    /// Regression along one direction for each output, that of least squares (Mousas, Newbury and Anagnostopoulos 2014).
+    /// Regression along one direction for each output: that of least squares (Mousas, Newbury and Anagnostopoulos
+    /// 2014).
     LocalRegression,
     /// The same along the direction of partial least squares.
     PartialLeastSquares,
@@ -38,19 +40,19 @@ pub enum Model {
     MeanPose,
 }
 
-/// What is predicted of the rotations.
+/// Quantity that is predicted for the rotations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
-    /// The vectors of the next pose.
+    /// The rotation vectors of the next pose.
     Pose,
     /// Their changes from the last pose.
     Change,
 }
 
-/// How the deviations of regressions are taken.
+/// Estimate of the standard deviations of regressions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Deviation {
-    /// Leave-one-out residuals, carried over to the query: the further it lies beside the examples, the larger.
+    /// Leave-one-out residuals scaled to the query: they grow with its distance from the span of the examples.
     Predictive,
     /// Leave-one-out residuals.
     LeaveOneOut,
@@ -59,17 +61,17 @@ pub enum Deviation {
 /// Parameters of a local model.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
-    /// Which one.
+    /// The model.
     pub model: Model,
-    /// What it predicts.
+    /// The quantity that it predicts.
     pub target: Target,
-    /// How its deviations are taken.
+    /// The estimate of its standard deviations.
     pub deviation: Deviation,
-    /// How far examples count, radians; 0 for the median of their distances.
+    /// Width of the Gaussian weights of the examples, radians; 0 for the median of their distances.
     pub bandwidth: f64,
-    /// In shares of the mean eigenvalue of the inputs' products.
+    /// Ridge, relative to the mean eigenvalue of the inputs' inner products.
     pub ridge: f64,
-    /// Share of the variance that principal components make up.
+    /// Share of the variance that the principal components explain.
     pub share: f64,
 }
 
@@ -86,17 +88,19 @@ impl Default for Options {
     }
 }
 
-/// Examples of how motion goes on.
+/// Examples: short segments of motion and the poses that follow them.
 ///
-/// They should lie apart in time: the nearest frames of a database are neighbours in a few clips, and say the same again and
-/// again. Of examples that begin at every eighth frame at 60 frames per second, the nearest 64 halve the error of regressions.
+/// They should have a minimum distance in time: the nearest frames of a database are neighbours in a few clips and
+/// carry the same information. Of examples that begin at every eighth frame at 60 frames per second, the nearest 64
+/// halve the error of regressions.
 #[derive(Debug, Clone, Copy)]
 pub struct Neighbors<'a, T> {
-    /// `(count, frames, joints, 4)`: poses, the oldest first, the last of them the next one. No sample is missing.
+    /// `(count, frames, joints, 4)`: poses, the oldest first; the last one is the pose to be predicted. No sample is
+    /// missing.
     pub segments: &'a [T],
-    /// `(count, roots)`: what else is to be predicted of the next pose.
+    /// `(count, roots)`: further outputs, of the root.
     pub root_steps: &'a [T],
-    /// `(count, signals)`: what else they are compared by and predicted from, in radians or what counts like them: differences from the
+    /// `(count, signals)`: further inputs, in radians or in units that count like radians: differences from the
     /// query, whose own are 0.
     pub differences: &'a [T],
     /// K.
@@ -111,26 +115,26 @@ pub struct Neighbors<'a, T> {
     pub signals: usize,
 }
 
-/// The next pose, and how far the truth may lie from it.
+/// The predicted pose and its Gaussian distribution.
 #[derive(Debug, Clone)]
 pub struct Prediction {
-    /// Rotations about which the others are vectors, `(joints)`.
+    /// Centres of the rotation vectors, `(joints)`.
     pub chart: Vec<[f64; 4]>,
-    /// `(3·joints + roots)`: joint j is `chart_j · exp(mean_j / 2)`; then the root's steps.
+    /// `(3·joints + roots)`: joint j is `chart_j · exp(mean_j / 2)`; then the outputs of the root.
     pub mean: Vec<f64>,
-    /// Standard deviations beside the axes, at least [`LEAST_DEVIATION`].
+    /// Standard deviations apart from the axes, at least [`LEAST_DEVIATION`].
     pub deviation: Vec<f64>,
     /// `(3·joints + roots, rank)`: the covariance is `diag(deviation²) + axes axesᵀ`.
     pub axes: Vec<f64>,
-    /// How many axes there are; none but for [`Model::LocalPca`].
+    /// Number of axes; 0 except for [`Model::LocalPca`].
     pub rank: usize,
 }
 
 /// Predicts the pose that follows `recent`, `(frames − 1, joints, 4)`; `joint_weights` is the diagonal of W, by joint.
 ///
 /// # Errors
-/// [`Error::Length`] if the slices do not fit; [`Error::Parameter`] without an example, a frame before the next or a joint;
-/// [`Error::Interrupted`].
+/// [`Error::Length`] if the lengths of slices do not agree; [`Error::Parameter`] without an example, a previous pose
+/// or a joint; [`Error::Interrupted`].
 pub fn predict_pose<T: Real>(
     neighbors: &Neighbors<'_, T>,
     recent: &[T],
@@ -188,7 +192,7 @@ pub fn predict_pose<T: Real>(
     Ok(Prediction { chart, mean, deviation, axes, rank })
 }
 
-/// Mean, deviation and axes of the outputs, and how many axes there are.
+/// Mean, standard deviations, axes and number of axes of the outputs.
 type Predicted = (Vec<f64>, Vec<f64>, Vec<f64>, usize);
 
 fn predicted(examples: &Examples, options: &Options, interrupt: &Interrupt) -> Result<Predicted, Error> {
@@ -221,7 +225,7 @@ fn predicted(examples: &Examples, options: &Options, interrupt: &Interrupt) -> R
     Ok((fit.0, fit.1, Vec::new(), 0))
 }
 
-/// The outputs of the nearest example, and how far the others lie from them.
+/// The outputs of the nearest example, and the deviations of the others from them.
 fn nearest(examples: &Examples) -> Predicted {
     let mut from_it = Matrix::new(examples.output_mean.len(), examples.count());
     let mut mean = Vec::with_capacity(examples.output_mean.len());

@@ -1,4 +1,4 @@
-//! Models along the principal components of the examples.
+//! Models on the principal components of the examples.
 
 use super::dense::{Matrix, inner};
 use super::deviations::{Fit, LEAST_DEVIATION, Residuals};
@@ -7,10 +7,10 @@ use super::examples::{Examples, LEAST_LEFT, LEAST_SQUARE};
 use crate::Error;
 use crate::parallel::Interrupt;
 
-/// In shares of the largest eigenvalue: smaller ones are roundings of float64.
+/// Smallest eigenvalue, relative to the largest: smaller ones are float64 rounding errors.
 const LEAST_EIGENVALUE: f64 = 1e-12;
 
-/// Largest eigenvalues and their vectors, and how many of them make up a share of the trace.
+/// Eigenvalues and eigenvectors, and the number of them that explain a share of the trace.
 fn components(gram: Matrix, share: f64, interrupt: &Interrupt) -> Result<(Eigen, usize), Error> {
     let found = eigen(gram, interrupt)?;
     let wanted = share * found.values.iter().sum::<f64>();
@@ -25,14 +25,15 @@ fn components(gram: Matrix, share: f64, interrupt: &Interrupt) -> Result<(Eigen,
     Ok((found, kept.min(positive)))
 }
 
-/// Regression on the principal components of the inputs (Liu et al. 2011). Where an example is left out, the components stay.
+/// Regression on the principal components of the inputs (Liu et al. 2011). The leave-one-out residuals keep the
+/// components fixed.
 pub(super) fn regression(examples: &Examples, share: f64, interrupt: &Interrupt) -> Result<Fit, Error> {
     let (found, kept) = components(examples.gram.copy(), share, interrupt)?;
     let count = examples.count();
     let mut projection = Matrix::new(count, count);
     let mut solution = vec![0.0; projection.width()];
     for (vector, value) in found.vectors.rows().zip(&found.values).take(kept) {
-        let along = inner(vector, &examples.shadow) / value;
+        let along = inner(vector, &examples.query_products) / value;
         for (x, v) in solution.iter_mut().zip(vector) {
             *x += along * v;
         }
@@ -49,7 +50,7 @@ pub(super) fn regression(examples: &Examples, share: f64, interrupt: &Interrupt)
     let mut residuals = y.less(&y.times(&projection), 1.0);
     for (row, y) in residuals.rows_mut().zip(y.rows()) {
         for (((x, left), y), weight) in row.iter_mut().zip(&left).zip(y).zip(&examples.weights) {
-            // An example that alone decides its own prediction leaves the mean of the others.
+            // An example that determines its own prediction falls back to the mean of the others.
             let growth = (1.0 - weight / examples.total).max(LEAST_LEFT);
             *x = if *left > LEAST_LEFT { *x / left } else { y / growth };
         }
@@ -58,8 +59,8 @@ pub(super) fn regression(examples: &Examples, share: f64, interrupt: &Interrupt)
     Ok(Fit { mean, residuals: Residuals(residuals) })
 }
 
-/// Deviations beside the axes, and the axes, `(D, r)` with r, of the principal subspace of the examples' next poses (Chai and
-/// Hodgins 2005).
+/// Principal subspace of the examples' next poses (Chai and Hodgins 2005): the standard deviations apart from the
+/// axes, the axes, `(D, r)`, and r.
 pub(super) fn analysis(
     examples: &Examples,
     share: f64,

@@ -1,21 +1,23 @@
 //! Regression along one direction for each output (Mousas, Newbury and Anagnostopoulos 2014).
 //!
-//! The matrix of eqs. (5) to (8) has rank one. Its eigenvector is the direction of the weighted least squares with a ridge,
-//! `u ∝ Xᵀ A y`, `A = (XXᵀ + λ I)⁻¹`; that of partial least squares is `u ∝ Xᵀ y`. Along it the coefficient is fitted again
-//! (eq. 9), `γ = (Xu)ᵀy / |Xu|²`. Without example k the means move, by which all that is left of the example grows by
-//! `b = Σω / (Σω − ω_k)`; its product with `x_k` leaves `XᵀX` and `Xᵀy`, and `u` moves by `−κ` times column k of what leads
-//! from y to u.
+//! The matrix of eqs. (5) to (8) has rank one. Its eigenvector is the direction of the weighted least squares with a
+//! ridge, `u ∝ Xᵀ A y`, `A = (XXᵀ + λ I)⁻¹`; that of partial least squares is `u ∝ Xᵀ y`. Along it the coefficient is
+//! fitted again (eq. 9), `γ = (Xu)ᵀy / |Xu|²`.
+//!
+//! Leaving out example k changes three things. The means move, so the residual of the example grows by `b = Σω / (Σω
+//! − ω_k)`. Its product with `x_k` is removed from `XᵀX` and `Xᵀy`. And `u` changes by `−κ` times column k of the
+//! operator that maps y to u.
 
 use super::dense::inner;
 use super::deviations::{Fit, Residuals};
 use super::examples::{Examples, LEAST_LEFT, Ridge};
 use crate::simd::multiversion;
 
-/// What the examples have in common for all outputs, each padded.
+/// Quantities shared by all outputs, each padded.
 struct Shared {
     /// `b` of each example.
     growth: Vec<f64>,
-    /// `κ` is this times the change's row.
+    /// `κ` is this times the output's `change` row.
     change: Vec<f64>,
     /// The diagonals of the operator and of its square.
     diagonal: Vec<f64>,
@@ -27,7 +29,7 @@ struct Rows<'a> {
     y: &'a [f64],
     /// `Xu`.
     along: &'a [f64],
-    /// What `κ` is made of.
+    /// The row from which `κ` is computed.
     change: &'a [f64],
 }
 
@@ -39,9 +41,9 @@ pub(super) fn regression(examples: &Examples, ridge: &Ridge, least_squares: bool
     } else {
         (0.0, examples.gram.copy(), y.copy())
     };
-    // H = G A = I − λ A: where λ A y is small, H y is more exact so.
+    // H = G A = I − λ A. Where λ A y is small, this form of H y is more accurate.
     let along = if least_squares { y.less(&dual, lambda) } else { y.times(&operator) };
-    // The operator applied twice, in whose place the residuals come.
+    // The operator applied twice; the residuals overwrite it.
     let mut residuals = along.times(&operator);
     let shares = examples.weights.iter().map(|weight| weight / examples.total);
     let growth: Vec<f64> = shares.clone().map(|share| 1.0 / (1.0 - share).max(LEAST_LEFT)).collect();
@@ -57,13 +59,13 @@ pub(super) fn regression(examples: &Examples, ridge: &Ridge, least_squares: bool
     for ((((y, along), dual), twice), before) in rows.zip(&examples.output_mean) {
         let rows = Rows { y, along, change: dual };
         let factor = leave_one_out(&rows, &shared, twice);
-        mean.push(before + factor * inner(&examples.shadow, dual));
+        mean.push(before + factor * inner(&examples.query_products, dual));
     }
     Fit { mean, residuals: Residuals(residuals) }
 }
 
 multiversion! {
-    /// `γ` of one output. `out` is the operator times `Xu`, and becomes the residuals of the examples, each left out.
+    /// `γ` of one output. `out` is the operator times `Xu` on entry, and the leave-one-out residuals on return.
     fn leave_one_out(rows: &Rows<'_>, shared: &Shared, out: &mut [f64]) -> f64 {
         let (product, square) = (inner(rows.along, rows.y), inner(rows.along, rows.along));
         let Shared { growth, change, diagonal, square: squares } = shared;

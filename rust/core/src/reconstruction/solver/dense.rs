@@ -1,7 +1,7 @@
 //! Small symmetric systems.
 
-/// Factors a symmetric positive definite matrix `(n, n)` in place: its lower triangle becomes Cholesky's. False if it is not
-/// positive definite, or not finite.
+/// Cholesky factor of a symmetric positive definite matrix `(n, n)`, in place in its lower triangle. Returns false if
+/// the matrix is not positive definite or not finite.
 pub(super) fn factor(matrix: &mut [f64], n: usize) -> bool {
     for j in 0..n {
         for i in j..n {
@@ -22,7 +22,7 @@ pub(super) fn factor(matrix: &mut [f64], n: usize) -> bool {
     true
 }
 
-/// Solves with the factor of [`factor`], in place.
+/// Solves a system with the Cholesky factor of [`factor`], in place.
 pub(super) fn solve(factor: &[f64], n: usize, x: &mut [f64]) {
     for i in 0..n {
         let mut sum = x[i];
@@ -40,7 +40,7 @@ pub(super) fn solve(factor: &[f64], n: usize, x: &mut [f64]) {
     }
 }
 
-/// Sum of products, in four partial sums.
+/// Inner product, in four partial sums.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
     let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));

@@ -1,4 +1,4 @@
-//! The most probable pose: control points against what is expected, by Levenberg and Marquardt's method.
+//! The most probable pose given the control points and a Gaussian prior, by the Levenberg–Marquardt method.
 
 mod dense;
 mod prior;
@@ -12,34 +12,35 @@ use crate::Error;
 use crate::error::check_length;
 use targets::Errors;
 
-/// Share of the prior that is added where a plain Gauss-Newton step does not lower the energy.
+/// First damping λ after a Gauss–Newton step that does not lower the energy.
 const FIRST_DAMPING: f64 = 0.1;
 
-/// How much stronger the damping becomes after a step that failed, and weaker after one that did not.
+/// Factor by which the damping grows after a failed step and shrinks after a successful one.
 const DAMPING_FACTOR: f64 = 8.0;
 
-/// Below it steps are Gauss and Newton's.
+/// Damping below which steps are undamped Gauss–Newton steps.
 const WEAKEST_DAMPING: f64 = 1e-3;
 
-/// Where not even steps of a billionth lower the energy, rounding decides.
+/// Damping at which the solver stops: if steps a billion times shorter do not lower the energy, rounding errors
+/// dominate.
 const STRONGEST_DAMPING: f64 = 1e9;
 
-/// Relative fall of the energy after which what is left to gain, a fraction of it, moves no joint by anything that shows. A fall
-/// near the roundings of the energy would be decided by these.
+/// Relative decrease of the energy at which the solver stops: the remaining decrease, a fraction of it, moves no
+/// joint visibly. A smaller value would be comparable to the energy's rounding errors.
 const SETTLED: f64 = 1e-9;
 
-/// The energy of a solution, and what it took.
+/// The energy of a solution, and the number of steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solution {
-    /// Half the squared errors of what is seen, in standard deviations.
+    /// Half the squared errors of the observed control points, in standard deviations.
     pub likelihood: f64,
-    /// Half the squared distance from what was expected, in standard deviations.
+    /// Half the squared distance from the prior mean, in standard deviations.
     pub prior: f64,
-    /// How many steps lowered the energy.
+    /// Number of steps that lowered the energy.
     pub steps: usize,
 }
 
-/// Finds poses of one body; keeps its memory from one to the next.
+/// Computes poses of one body; keeps its scratch memory between them.
 #[derive(Debug, Clone)]
 pub struct Solver {
     body: Body,
@@ -47,7 +48,7 @@ pub struct Solver {
     columns: Vec<usize>,
     here: Errors,
     there: Errors,
-    /// What of the prior's axes moves control points: `(errors, axes)`.
+    /// Jacobian of the errors along the prior's axes: `(errors, axes)`.
     along: Vec<f64>,
     matrix: Vec<f64>,
     dual: Vec<f64>,
@@ -93,14 +94,15 @@ impl Solver {
 
     /// Moves the coordinates `x` to the least energy `‖r(x)‖²/2 + (x − μ)ᵀ C⁻¹ (x − μ)/2`.
     ///
-    /// `r` are the errors of the control points in standard deviations. There are few of them and many coordinates, so each
-    /// step is solved in the space of the errors: with their Jacobian `A`, Gauss and Newton's step is to `x' = μ + C Aᵀ y`
-    /// with `(A C Aᵀ + 1) y = A (x − μ) − r`. Damping by `λ` adds `λ (x' − x)ᵀ C⁻¹ (x' − x)/2`, which is a prior of the mean
-    /// `(μ + λx)/(1 + λ)` and the covariance `C/(1 + λ)`. A step that does not lower the energy is not taken; at most `most`
-    /// are tried.
+    /// `r` are the errors of the control points in standard deviations. There are few errors and many coordinates, so
+    /// each step is solved in the space of the errors. With their Jacobian `A`, the Gauss–Newton step leads to `x' =
+    /// μ + C Aᵀ y` with `(A C Aᵀ + 1) y = A (x − μ) − r`. Damping by `λ` adds `λ (x' − x)ᵀ C⁻¹ (x' − x)/2`, which
+    /// amounts to a prior with the mean `(μ + λx)/(1 + λ)` and the covariance `C/(1 + λ)`. A step that does not lower
+    /// the energy is rejected; at most `most` steps are tried.
     ///
     /// # Errors
-    /// [`Error::Length`] if the slices do not fit; [`Error::Parameter`] if a deviation of the prior is not above 0.
+    /// [`Error::Length`] if the lengths of slices do not agree; [`Error::Parameter`] if a deviation of the prior is
+    /// not above 0.
     pub fn solve(
         &mut self,
         base: &Base,
@@ -153,7 +155,7 @@ impl Solver {
         targets.check(self.body.points())
     }
 
-    /// Writes where a damped step leads; false if there is none.
+    /// Writes the end of a damped step; false if the system cannot be solved.
     fn step(
         &mut self,
         prior: &Prior<'_>,
@@ -162,6 +164,7 @@ impl Solver {
         (trial, trial_force): (&mut [f64], &mut [f64]),
     ) -> bool {
         let (n, columns, axes) = (self.here.values.len(), self.here.columns(), prior.count());
+        // Damped prior: mean (μ + λx)/(1 + λ), covariance C/(1 + λ).
         let (share, kept) = (1.0 / (1.0 + damping), damping / (1.0 + damping));
         for d in 0..x.len() {
             trial[d] = prior.mean[d] + kept * (x[d] - prior.mean[d]);
@@ -170,6 +173,7 @@ impl Solver {
         if n == 0 {
             return true;
         }
+        // The system (A C Aᵀ + 1) y = A (x − μ) − r.
         self.along.clear();
         self.along.resize(n * axes, 0.0);
         self.dual.clear();
@@ -198,6 +202,7 @@ impl Solver {
             return false;
         }
         dense::solve(&self.matrix, n, &mut self.dual);
+        // The step x' = μ + C Aᵀ y.
         let mut pull = vec![0.0; columns];
         let mut pull_along = vec![0.0; axes];
         for (i, row) in self.here.rows.chunks_exact(columns).enumerate() {

@@ -1,4 +1,4 @@
-//! What is expected of the coordinates of a pose.
+//! Gaussian prior of the coordinates of a pose.
 
 use super::dense;
 use crate::Error;
@@ -7,16 +7,16 @@ use crate::error::check_length;
 /// A Gaussian with the covariance `diag(deviation²) + axes·axesᵀ`.
 #[derive(Debug, Clone, Copy)]
 pub struct Prior<'a> {
-    /// Expected values, `(coordinates)`.
+    /// Means, `(coordinates)`.
     pub mean: &'a [f64],
-    /// Standard deviations beside the axes, above 0, `(coordinates)`.
+    /// Standard deviations apart from the axes, above 0, `(coordinates)`.
     pub deviation: &'a [f64],
-    /// Directions in which poses spread moreover, each as long as one standard deviation, `(coordinates, n)`; or none.
+    /// Additional directions of variation, each as long as one standard deviation, `(coordinates, n)`; or none.
     pub axes: &'a [f64],
 }
 
 impl Prior<'_> {
-    /// How many axes there are.
+    /// Number of axes.
     pub(super) fn count(&self) -> usize {
         if self.mean.is_empty() { 0 } else { self.axes.len() / self.mean.len() }
     }
@@ -37,7 +37,7 @@ impl Prior<'_> {
         Err(Error::Parameter { name: "deviation", expected: "numbers above 0" })
     }
 
-    /// The inverse of the covariance times a difference from the mean, by Woodbury's identity.
+    /// `C⁻¹ (x − μ)` by the Woodbury identity.
     pub(super) fn force(&self, x: &[f64]) -> Vec<f64> {
         let plain = |d: usize| (x[d] - self.mean[d]) / (self.deviation[d] * self.deviation[d]);
         let mut force: Vec<f64> = (0..x.len()).map(plain).collect();

@@ -1,20 +1,22 @@
-//! Where control points are seen, and by how much a pose misses them.
+//! Observed control points, and the errors of a pose relative to them.
 
 use crate::Error;
 use crate::error::check_length;
-use crate::reconstruction::kinematics::{Base, Body, Points, matrix, times, transposed, turning_inverse};
+use crate::reconstruction::kinematics::{
+    Base, Body, Points, matrix, right_jacobian_inverse, times, transposed,
+};
 use crate::rotations::quaternion::{between, log_short, of_row};
 
-/// Where control points are seen.
+/// Observed control points.
 #[derive(Debug, Clone, Copy)]
 pub struct Targets<'a> {
-    /// Their places, `(points, 3)`.
+    /// Positions, `(points, 3)`.
     pub positions: &'a [f64],
-    /// Standard deviation of each coordinate, `(points)`; infinite where a point is not seen.
+    /// Standard deviation of each coordinate, `(points)`; infinite where a point is not observed.
     pub position_deviations: &'a [f64],
-    /// Their global rotations, `(points, 4)`.
+    /// Global rotations, `(points, 4)`.
     pub orientations: &'a [f64],
-    /// Standard deviation of each component of the rotation vector, radians, `(points)`; infinite where it is not seen.
+    /// Standard deviation of each component of the rotation vector, radians, `(points)`; infinite where not observed.
     pub orientation_deviations: &'a [f64],
 }
 
@@ -26,7 +28,7 @@ impl Targets<'_> {
         check_length("orientation_deviations", points, self.orientation_deviations.len())
     }
 
-    /// How many errors there are.
+    /// Number of errors.
     pub(super) fn count(&self) -> usize {
         let seen = |deviations: &[f64]| deviations.iter().filter(|deviation| deviation.is_finite()).count();
         3 * (seen(self.position_deviations) + seen(self.orientation_deviations))
@@ -51,12 +53,12 @@ impl Errors {
         self.points.columns()
     }
 
-    /// Half the sum of the squares.
+    /// Half the sum of squares.
     pub(super) fn energy(&self) -> f64 {
         0.5 * self.values.iter().map(|value| value * value).sum::<f64>()
     }
 
-    /// Errors of the pose with the coordinates `x`.
+    /// Computes the errors of the pose with the coordinates `x`, and their Jacobian.
     pub(super) fn at(&mut self, body: &Body, base: &Base, targets: &Targets<'_>, x: &[f64]) {
         let columns = self.points.columns();
         self.values.clear();
@@ -67,7 +69,7 @@ impl Errors {
             let Some(block) = blocks.next() else { return };
             let deviation = targets.position_deviations[point];
             let (place, _) = self.points.at(body, point);
-            self.points.moving_rows(body, base, point, block);
+            self.points.position_rows(body, base, point, block);
             for (&is, &should) in place.iter().zip(&targets.positions[3 * point..]) {
                 self.values.push((is - should) / deviation);
             }
@@ -79,10 +81,10 @@ impl Errors {
             let Some(block) = blocks.next() else { return };
             let deviation = targets.orientation_deviations[point];
             let (_, turn) = self.points.at(body, point);
-            self.points.turning_rows(body, point, block);
+            self.points.rotation_rows(body, point, block);
             let vector =
                 log_short(between(of_row(&targets.orientations[4 * point..]), turn)).map(|v| 2.0 * v);
-            let inward = times(&turning_inverse(vector), &transposed(&matrix(turn)));
+            let inward = times(&right_jacobian_inverse(vector), &transposed(&matrix(turn)));
             self.values.extend(vector.map(|v| v / deviation));
             for column in 0..columns {
                 let spin = [block[column], block[columns + column], block[2 * columns + column]];
@@ -95,7 +97,7 @@ impl Errors {
     }
 }
 
-/// Which points are seen.
+/// Indices of the observed points.
 fn seen(deviations: &[f64]) -> impl Iterator<Item = usize> {
     deviations.iter().enumerate().filter(|(_, deviation)| deviation.is_finite()).map(|(point, _)| point)
 }

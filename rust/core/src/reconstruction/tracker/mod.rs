@@ -1,76 +1,77 @@
-//! A motion that follows control points, frame by frame.
+//! Frame-by-frame reconstruction of a motion from control points.
 
 mod lattice;
+mod observations;
 mod poses;
 mod recent;
 mod search;
-mod sight;
+mod shrink;
 mod signals;
 mod tables;
-mod trails;
+mod trajectories;
 mod walk;
-mod within;
 
 pub use poses::Poses;
 pub use tables::Tables;
 
-use super::frame::{HORIZONTAL, heading, turn, turned};
-use super::kinematics::{Base, Body, WAY};
+use super::frame::{HORIZONTAL, heading, rotated, rotation_about};
+use super::kinematics::{Base, Body, ROOT};
 use super::local_models::{self, Neighbors, predict_pose};
 use super::solver::{Prior, Solver, Targets};
 use crate::Error;
 use crate::error::check_length;
 use crate::parallel::Interrupt;
 use crate::rotations::quaternion::{between, log_short, of_row, product};
-use crate::search::poses::walk::Trust;
+use crate::search::poses::walk::Fallback;
 use lattice::Lattice;
+use observations::Observations;
 use recent::Recent;
 use search::{Example, Query};
-use sight::Sight;
+use shrink::shrunk;
 use signals::Signals;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use tables::Shape;
-use trails::Trails;
+use trajectories::Trajectories;
 use walk::Walk;
-use within::within;
 
-/// How a motion is reconstructed.
+/// Options of a reconstruction.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// How many poses before are compared, and predicted from.
+    /// Number of previous poses that are compared and that the prediction uses.
     pub order: usize,
-    /// How many examples are learned from.
+    /// Number of examples.
     pub neighbors: usize,
-    /// Every which pose of a clip may be an example.
+    /// Only every `stride`-th pose of a clip is a candidate.
     pub stride: usize,
-    /// So many frames apart are examples of one clip, at least.
+    /// Minimum distance between two examples of one clip, in frames.
     pub spacing: usize,
-    /// How many frames ago control points are compared.
+    /// Lags, in frames, at which control points are compared.
     pub window: Vec<usize>,
-    /// Distance of control points that counts as much as a radian between poses, where examples are looked for and where they are
-    /// learned from; infinite: poses alone.
+    /// Distance of control points that counts as much as one radian between poses, in the search for examples and in
+    /// the regression; infinite: only poses count.
     pub scale: f64,
-    /// After so many frames without a control point the next one is a new start.
+    /// Number of frames without any control point after which the tracker restarts.
     pub patience: usize,
-    /// How examples predict.
+    /// The local model.
     pub model: local_models::Options,
-    /// Standard deviations of what models do not see: of a joint's coordinate in radians, and of the root's way.
-    pub floor: [f64; 1 + WAY],
-    /// The most steps of the solver per frame.
+    /// Standard deviations added to those of the model: of a joint's coordinate in radians, and of the root's
+    /// displacement.
+    pub floor: [f64; 1 + ROOT],
+    /// Largest number of solver steps per frame.
     pub steps: usize,
-    /// With a graph: when all examples are looked at nevertheless.
-    pub trust: Trust,
+    /// With a graph: when the tracker falls back to a full search.
+    pub fallback: Fallback,
 }
 
-/// What is known of the frames before.
+/// State after the previous frame.
 #[derive(Debug, Clone)]
 pub struct State {
     /// The last poses, `(order, joints, 4)`, the oldest first, without headings.
     pub recent: Vec<f64>,
-    /// Where the root was in the last frame.
+    /// Position of the root in the last frame.
     pub place: [f64; 3],
-    /// Its heading then, radians.
+    /// Heading of the root in the last frame, radians.
     pub heading: f64,
 }
 
@@ -81,11 +82,11 @@ pub struct Pose {
     pub rotations: Vec<f64>,
     /// Position of the root.
     pub translation: [f64; 3],
-    /// The two parts of the energy: of what is seen, and of what was expected.
+    /// The two terms of the energy: of the observations and of the prior.
     pub energies: [f64; 2],
 }
 
-/// Takes control points frame by frame, and gives poses.
+/// Reconstructs poses from control points, frame by frame.
 #[derive(Debug, Clone)]
 pub struct Tracker {
     solver: Solver,
@@ -93,22 +94,22 @@ pub struct Tracker {
     state: Option<State>,
     /// Control points of the last frames and their weights, the newest first.
     past: VecDeque<(Vec<f64>, Vec<f64>)>,
-    /// Frames since a control point was seen.
+    /// Number of frames since a control point was observed.
     blind: usize,
-    sight: Sight,
-    /// What does not depend on the frame.
+    observations: Observations,
+    /// Tables that do not depend on the frame.
     tables: Arc<Tables>,
     walk: Walk,
-    /// A bit for each pose of the database.
+    /// Bit set over all poses of the database.
     bits: Vec<u64>,
 }
 
 impl Tracker {
-    /// A tracker of one body; without a state it starts from the pose of the database that fits the first frame best. Trackers of the same
-    /// body, options and poses may share their `tables`, which are empty at first.
+    /// A tracker of one body. Without a state it starts from the pose of the database that fits the first frame best.
+    /// Trackers of the same body, options and poses may share their `tables`, which are empty at first.
     ///
     /// # Errors
-    /// [`Error::Length`] and [`Error::Parameter`] if options and state are not of the body.
+    /// [`Error::Length`] and [`Error::Parameter`] if options and state do not match the body.
     pub fn new(
         body: Body,
         options: Options,
@@ -127,26 +128,27 @@ impl Tracker {
             state,
             past: VecDeque::new(),
             blind: 0,
-            sight: Sight::default(),
+            observations: Observations::default(),
             tables,
             walk: Walk::default(),
             bits: Vec::new(),
         })
     }
 
-    /// How many poses of its clip an example has before it.
+    /// Number of poses of its clip that an example needs before it.
     fn before(&self) -> usize {
         self.options.window.iter().copied().max().unwrap_or(0).max(self.options.order)
     }
 
-    /// Takes in the control points of the next frame, and returns its pose.
+    /// Takes the control points of the next frame, and returns its pose.
     ///
-    /// The poses must be the same in each frame. In each, the examples nearest to the last poses are found, a local model of how
-    /// they went on predicts the pose, and the most probable pose is found from the prediction or from the nearest example, whichever has the lower energy.
+    /// The poses must be the same in each frame. Each frame takes three steps: search the examples nearest to the
+    /// last poses; predict the pose by a local model of the examples; minimise the energy, starting from the
+    /// prediction or from the nearest example, whichever has the lower energy.
     ///
     /// # Errors
-    /// [`Error::Length`] and [`Error::Parameter`] if the database or the targets are not of the body, or the database has no
-    /// clip that is long enough; [`Error::Interrupted`]. The tracker then is as it was.
+    /// [`Error::Length`] and [`Error::Parameter`] if the database or the targets do not match the body, or no clip of
+    /// the database is long enough; [`Error::Interrupted`]. The tracker is then unchanged.
     pub fn push(
         &mut self,
         poses: &Poses<'_>,
@@ -160,15 +162,15 @@ impl Tracker {
             .map(|&deviation| if deviation.is_finite() { 1.0 / (deviation * deviation) } else { 0.0 })
             .collect();
         let missing = weights.iter().all(|&weight| weight == 0.0);
-        self.sight.clear();
-        for (place, &lag) in self.options.window.iter().enumerate() {
+        self.observations.clear();
+        for (slot, &lag) in self.options.window.iter().enumerate() {
             if lag == 0 {
-                self.sight.add((place, 0), seen.positions, &weights, up);
+                self.observations.add((slot, 0), seen.positions, &weights, up);
             } else if let Some((positions, weights)) = self.past.get(lag - 1) {
-                self.sight.add((place, lag), positions, weights, up);
+                self.observations.add((slot, lag), positions, weights, up);
             }
         }
-        self.sight.finish();
+        self.observations.finish();
         let tables = Arc::clone(&self.tables);
         let shape = Shape {
             before: self.before(),
@@ -187,11 +189,11 @@ impl Tracker {
         Ok(pose)
     }
 
-    /// The pose of the next frame, the state that it was found from, and the walk that goes on from it.
+    /// The pose of the next frame, the state from which it was computed, and the updated walk.
     fn reach(
         &mut self,
         poses: &Poses<'_>,
-        candidates: &(Lattice, Trails),
+        candidates: &(Lattice, Trajectories),
         seen: &Targets<'_>,
         missing: bool,
         interrupt: &Interrupt,
@@ -206,7 +208,7 @@ impl Tracker {
         Ok((pose, state, walk))
     }
 
-    /// What came before, from the pose that fits the control points best, where it fits best.
+    /// Initial state: the poses before the best-fitting pose of the database, moved to the best fit.
     fn begin(&self, query: &Query<'_>, interrupt: &Interrupt) -> Result<State, Error> {
         let up = self.solver.body().up;
         let [first, second] = HORIZONTAL[up];
@@ -215,9 +217,9 @@ impl Tracker {
             return Err(Error::Parameter { name: "poses", expected: "a clip longer than the window" });
         };
         let last = best - 1;
-        let (angle, shift) = self.sight.laid(&fit);
+        let (angle, shift) = self.observations.transform(&fit);
         let there = poses.place(last);
-        let mut place = turned([there[first], there[second]], angle, up);
+        let mut place = rotated([there[first], there[second]], angle, up);
         place[first] += shift[0];
         place[second] += shift[1];
         place[up] = there[up];
@@ -229,12 +231,12 @@ impl Tracker {
         })
     }
 
-    fn query<'a>(&'a self, poses: &Poses<'a>, candidates: &'a (Lattice, Trails)) -> Query<'a> {
+    fn query<'a>(&'a self, poses: &Poses<'a>, candidates: &'a (Lattice, Trajectories)) -> Query<'a> {
         Query {
             poses: *poses,
             lattice: &candidates.0,
-            trails: &candidates.1,
-            sight: &self.sight,
+            trajectories: &candidates.1,
+            observations: &self.observations,
             up: self.solver.body().up,
             scale: self.options.scale,
             count: self.options.neighbors,
@@ -242,11 +244,11 @@ impl Tracker {
         }
     }
 
-    /// The examples of a frame, along the graph if there is one and it leads near enough.
+    /// The examples of a frame: along the graph if there is one and its result is near enough, else by a full search.
     fn examples(
         &mut self,
         poses: &Poses<'_>,
-        candidates: &(Lattice, Trails),
+        candidates: &(Lattice, Trajectories),
         state: &State,
         walk: &Walk,
         interrupt: &Interrupt,
@@ -257,11 +259,11 @@ impl Tracker {
             poses.feature(pose, &mut features);
         }
         let recent = Recent::new(features, self.options.order);
-        let trust = self.options.trust;
-        if let Some(graph) = poses.graph.filter(|_| walk.goes_on(trust)) {
+        let fallback = self.options.fallback;
+        if let Some(graph) = poses.graph.filter(|_| walk.goes_on(fallback)) {
             let around = walk.around(&candidates.0, graph, &mut self.bits);
             let found = self.query(poses, candidates).among(&recent, &around);
-            if walk.trusts(&found, self.options.neighbors, trust) {
+            if walk.keeps(&found, self.options.neighbors, fallback) {
                 let walk = walk.follow(&found, false);
                 return Ok((found, walk));
             }
@@ -285,33 +287,33 @@ impl Tracker {
         let mut segments = Vec::with_capacity(found.len() * (order + 1) * joints * 4);
         let points = self.solver.body().points();
         let signals =
-            Signals::new(poses, (points, up), found, &self.sight, (state, order), self.options.scale);
+            Signals::new(poses, (points, up), found, &self.observations, (state, order), self.options.scale);
         for example in found.iter().map(|found| found.pose) {
             segments.extend(poses.segment(example - order..example + 1).iter().copied().map(f64::from));
         }
         let neighbors = Neighbors {
             segments: &segments,
-            root_steps: &signals.ways,
+            root_steps: &signals.root_steps,
             differences: &signals.differences,
             count: found.len(),
             frames: order + 1,
             joints,
-            roots: WAY,
+            roots: ROOT,
             signals: signals.count,
         };
-        let query = within(&segments, &state.recent, poses.joint_weights);
+        let query = shrunk(&segments, &state.recent, poses.joint_weights);
         let mut prediction =
             predict_pose(&neighbors, &query, poses.joint_weights, &self.options.model, interrupt)?;
         for (d, deviation) in prediction.deviation.iter_mut().enumerate() {
             let floor = self.options.floor[(d + 1).saturating_sub(3 * joints)];
             *deviation = (*deviation * *deviation + floor * floor).sqrt();
         }
-        let mut example: Vec<f64> = Vec::with_capacity(3 * joints + WAY);
+        let mut example: Vec<f64> = Vec::with_capacity(3 * joints + ROOT);
         let nearest = &segments[4 * order * joints..4 * (order + 1) * joints];
         for (q, &centre) in nearest.chunks_exact(4).zip(&prediction.chart) {
             example.extend(log_short(between(centre, of_row(q))).map(|v| 2.0 * v));
         }
-        example.extend(&signals.ways[..WAY]);
+        example.extend(&signals.root_steps[..ROOT]);
         let base = Base {
             centres: prediction.chart.as_flattened().to_vec(),
             place: state.place,
@@ -329,13 +331,13 @@ impl Tracker {
     }
 }
 
-/// What is known after one more frame.
+/// The state after one more frame.
 fn follow(state: State, pose: &Pose, up: usize) -> State {
     let width = pose.rotations.len();
     let angle = heading(of_row(&pose.rotations), up);
     let mut recent = state.recent;
     recent.drain(..width);
-    recent.extend(product(turn(-angle, up), of_row(&pose.rotations)));
+    recent.extend(product(rotation_about(-angle, up), of_row(&pose.rotations)));
     recent.extend(&pose.rotations[4..]);
     State { recent, place: pose.translation, heading: angle }
 }

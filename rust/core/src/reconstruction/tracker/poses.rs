@@ -1,32 +1,32 @@
-//! A database, as a tracker sees it.
+//! A database, as the tracker reads it.
 
 use crate::Error;
 use crate::error::check_length;
 use crate::reconstruction::frame::HORIZONTAL;
-use crate::reconstruction::kinematics::WAY;
+use crate::reconstruction::kinematics::ROOT;
 use crate::rotations::quaternion::{between, log_short, of_row};
 use crate::search::poses::graph::Graph;
 
-/// Poses of many clips, and where they would have the control points.
+/// Poses of many clips, with the positions of the control points.
 #[derive(Debug, Clone, Copy)]
 pub struct Poses<'a> {
-    /// Rotations, `(poses, joints, 4)`; those of the root without heading.
+    /// Rotations, `(poses, joints, 4)`; the root's without heading.
     pub rotations: &'a [f32],
     /// Headings of the root, radians, `(poses)`.
     pub heading: &'a [f32],
-    /// Positions of the root, in the size of the body that is reconstructed, `(poses, 3)`.
+    /// Positions of the root, scaled to the reconstructed body, `(poses, 3)`.
     pub translation: &'a [f32],
-    /// Positions of the control points, `(poses, points, 3)`.
-    pub trails: &'a [f32],
-    /// The first pose of each clip, and the number of poses.
+    /// Control-point trajectories, `(poses, points, 3)`.
+    pub trajectories: &'a [f32],
+    /// The first pose of each clip, followed by the number of poses.
     pub starts: &'a [i64],
-    /// Poses as vectors, `(poses, 3·joints)`.
+    /// Feature vectors of the poses, `(poses, 3·joints)`.
     pub features: &'a [f32],
-    /// From which they are measured, `(joints, 4)`.
+    /// Mean rotations to which the features are relative, `(joints, 4)`.
     pub mean_rotations: &'a [f64],
-    /// How much joints count in them, `(joints)`.
+    /// Weight of each joint in the features, `(joints)`.
     pub joint_weights: &'a [f64],
-    /// Neighbours of the poses, along which examples are looked for; `None`: all are looked at.
+    /// Graph of neighbours for the search of examples; `None`: every frame has a full search.
     pub graph: Option<Graph<'a>>,
 }
 
@@ -45,7 +45,7 @@ impl Poses<'_> {
         check_length("mean_rotations", 4 * joints, self.mean_rotations.len())?;
         check_length("rotations", 4 * count * joints, self.rotations.len())?;
         check_length("translation", 3 * count, self.translation.len())?;
-        check_length("trails", 3 * count * points, self.trails.len())?;
+        check_length("trajectories", 3 * count * points, self.trajectories.len())?;
         check_length("features", 3 * count * joints, self.features.len())?;
         let order = self.starts.first() == Some(&0)
             && self.starts.is_sorted()
@@ -57,8 +57,8 @@ impl Poses<'_> {
         }
     }
 
-    /// Ranges of poses with so many poses of their clip before them.
-    pub(super) fn old_enough(&self, frames: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
+    /// Ranges of poses with at least `frames` poses of their clip before them.
+    pub(super) fn with_history(&self, frames: usize) -> impl Iterator<Item = std::ops::Range<usize>> {
         self.starts.windows(2).filter_map(move |ends| {
             let (start, stop) = (usize::try_from(ends[0]).ok()? + frames, usize::try_from(ends[1]).ok()?);
             (start < stop).then_some(start..stop)
@@ -73,7 +73,7 @@ impl Poses<'_> {
         before(first) != before(second)
     }
 
-    /// Puts a pose as a vector behind others.
+    /// Appends the feature vector of a pose.
     pub(super) fn feature(&self, pose: &[f64], out: &mut Vec<f64>) {
         let joints = pose.chunks_exact(4).zip(self.mean_rotations.chunks_exact(4)).zip(self.joint_weights);
         for ((q, mean), &weight) in joints {
@@ -82,7 +82,7 @@ impl Poses<'_> {
         }
     }
 
-    /// The rotations of some poses.
+    /// The rotations of a range of poses.
     pub(super) fn segment(&self, poses: std::ops::Range<usize>) -> &[f32] {
         let width = 4 * self.joints();
         &self.rotations[poses.start * width..poses.end * width]
@@ -92,8 +92,9 @@ impl Poses<'_> {
         std::array::from_fn(|c| f64::from(self.translation[3 * pose + c]))
     }
 
-    /// How the root of an example came to its pose: step along two axes of the heading before, height, turn.
-    pub(super) fn way(&self, example: usize, up: usize) -> [f64; WAY] {
+    /// Root displacement of an example from its previous pose: step along the two axes of the previous heading,
+    /// height, change of heading.
+    pub(super) fn root_step(&self, example: usize, up: usize) -> [f64; ROOT] {
         let [first, second] = HORIZONTAL[up];
         let (here, before) = (self.place(example), self.place(example - 1));
         let angle = f64::from(self.heading[example - 1]);

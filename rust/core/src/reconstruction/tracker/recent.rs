@@ -1,18 +1,18 @@
-//! The last poses, and how far examples are from them.
+//! The last poses, and the distances of examples from them.
 
 use super::poses::Poses;
 use crate::Real;
 use crate::search::poses::Probe;
 use crate::simd::multiversion;
 
-/// Sums that run side by side.
+/// Number of running sums.
 const LANES: usize = 8;
 
-/// Relative rounding of a number in single precision.
+/// Relative rounding error in single precision.
 const ROUNDING: f64 = 0.5 * f32::EPSILON as f64;
 
 multiversion! {
-    /// The squared distance of a row of single precision from one of double.
+    /// The squared distance between a float32 row and a float64 row.
     fn square(row: &[f32], query: &[f64]) -> f64 {
         let mut sums = [0.0; LANES];
         let ((wide, rest), (row_wide, row_rest)) = (query.as_chunks::<LANES>(), row.as_chunks::<LANES>());
@@ -30,27 +30,27 @@ multiversion! {
     }
 }
 
-/// The last poses, as examples are compared with them.
+/// Feature vectors of the last poses.
 #[derive(Debug)]
 pub(super) struct Recent {
-    /// In sequence, the oldest first.
+    /// In double precision, the oldest first.
     exact: Vec<f64>,
     pub(super) probe: Probe<f32>,
     order: usize,
-    /// The same.
+    /// The order as `u32`.
     pub(super) before: u32,
-    /// How far rounding may have moved the probe.
+    /// Largest distance between the rounded and the exact features.
     moved: f64,
-    /// Relative error of squares in single precision.
+    /// Relative error of squared distances in single precision.
     error: f64,
 }
 
 impl Recent {
-    /// Poses as vectors, the oldest first.
+    /// Feature vectors of the last poses, the oldest first.
     pub(super) fn new(features: Vec<f64>, order: usize) -> Self {
         let rounded: Vec<f32> = features.iter().map(|&x| Real::from_f64(x)).collect();
         let length = features.iter().map(|x| x * x).sum::<f64>().sqrt();
-        // As many roundings as there are terms in a lane, some to add the lanes, and those of the square; and to be safe some more.
+        // Roundings: one per term of a lane, some for adding the lanes, those of the square, and a margin.
         let error = (features.len() / 16 + 16) as f64 * ROUNDING;
         Self {
             probe: Probe::new(&rounded),
@@ -62,12 +62,12 @@ impl Recent {
         }
     }
 
-    /// How many numbers the poses have together.
+    /// Number of values of all poses together.
     pub(super) fn numbers(&self) -> usize {
         self.exact.len()
     }
 
-    /// The least and the greatest that a mean square can be which single precision says is `square`, summed over the poses.
+    /// Lower and upper bound of the exact mean square of the poses, given the sum `square` in single precision.
     pub(super) fn bounds(&self, square: f32) -> [f64; 2] {
         let square = f64::from(square);
         let least = ((square / (1.0 + self.error)).sqrt() - self.moved).max(0.0);
@@ -75,7 +75,7 @@ impl Recent {
         [least * least, greatest * greatest].map(|bound| bound / self.order as f64)
     }
 
-    /// The mean square in double precision.
+    /// The mean square over the poses in double precision.
     pub(super) fn exact(&self, poses: &Poses<'_>, candidate: usize) -> f64 {
         let width = self.exact.len() / self.order.max(1);
         let row = &poses.features[(candidate - self.order) * width..candidate * width];

@@ -1,14 +1,15 @@
-//! The examples nearest to the last poses and the last control points, exactly.
+//! Exact search for the examples nearest to the last poses and the last control points.
 //!
-//! The distance of an example has two parts. That of the control points is computed first, for all candidates side by side; what
-//! it alone puts beyond the nearest is passed over. That of the poses is computed in single precision, with bounds on its error,
-//! and again in double precision for those that may be among the nearest.
+//! The distance of an example has two terms. The term of the control points is computed first, for all candidates
+//! side by side; candidates for which it alone exceeds the limit are skipped. The term of the poses is computed in
+//! single precision, with bounds of its error, and again in double precision for candidates that may be among the
+//! nearest.
 
 use super::lattice::Lattice;
+use super::observations::{Fit, Observations};
 use super::poses::Poses;
 use super::recent::Recent;
-use super::sight::{Fit, Sight};
-use super::trails::{LANES as SIDE_BY_SIDE, Trails};
+use super::trajectories::{LANES as SIDE_BY_SIDE, Trajectories};
 use crate::Error;
 use crate::parallel::{self, Interrupt};
 use crate::search::poses::squares_of;
@@ -17,7 +18,7 @@ use std::ops::Range;
 /// Candidates per task.
 const TASK: usize = 2048;
 
-/// A candidate that may be among the nearest.
+/// A candidate that may be among the nearest, with bounds of its squared distance.
 #[derive(Debug, Clone, Copy)]
 struct Measured {
     least: f64,
@@ -26,33 +27,33 @@ struct Measured {
     pose: u32,
 }
 
-/// An example, and its squared distance.
+/// An example and its squared distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Example {
     pub(super) square: f64,
     pub(super) pose: usize,
 }
 
-/// What examples are compared with.
+/// A query for the nearest examples.
 pub(super) struct Query<'a> {
     pub(super) poses: Poses<'a>,
     pub(super) lattice: &'a Lattice,
-    pub(super) trails: &'a Trails,
-    pub(super) sight: &'a Sight,
+    pub(super) trajectories: &'a Trajectories,
+    pub(super) observations: &'a Observations,
     pub(super) up: usize,
-    /// Distance of control points that counts as much as a radian between poses.
+    /// Distance of control points that counts as much as one radian between poses.
     pub(super) scale: f64,
-    /// How many examples are sought.
+    /// Number of examples.
     pub(super) count: usize,
-    /// So many frames apart are examples of one clip, at least.
+    /// Minimum distance between two examples of one clip, in frames.
     pub(super) spacing: usize,
 }
 
 impl Query<'_> {
-    /// The nearest examples' next poses, nearest first; the first of those equally near. Of those within less than `spacing`
-    /// frames of each other in a clip only the nearest is taken.
+    /// The nearest examples, nearest first; ties go to the lower index. Each example is identified by its next pose.
+    /// Of examples less than `spacing` frames apart in one clip only the nearest is kept.
     ///
-    /// `near` are poses that are probably among the nearest: the nearer they are, the more is passed over.
+    /// `near` are poses that are probably among the nearest. The nearer they are, the more candidates are skipped.
     pub(super) fn among_all(
         &self,
         recent: &Recent,
@@ -64,10 +65,11 @@ impl Query<'_> {
         let mut seen = vec![0.0; all.len()];
         if share > 0.0 {
             let tasks: Vec<&mut [f64]> = seen.chunks_mut(TASK).collect();
-            let work = all.len() * (self.sight.marks() * 2 + 4);
+            let work = all.len() * (self.observations.count() * 2 + 4);
             parallel::for_each(tasks, work, |task, out| {
                 interrupt.check()?;
-                self.sight.distances(self.trails.planes(task * TASK..task * TASK + out.len()), out);
+                self.observations
+                    .distances(self.trajectories.planes(task * TASK..task * TASK + out.len()), out);
                 for distance in out {
                     *distance *= share;
                 }
@@ -86,7 +88,7 @@ impl Query<'_> {
             let (mut left, mut left_seen) =
                 (Vec::with_capacity(range.len()), Vec::with_capacity(range.len()));
             for slot in range {
-                // Not the other way round: what is no number is not passed over.
+                // Not `!(<=)`: NaN must not be skipped.
                 if seen[slot] > far {
                     continue;
                 }
@@ -100,7 +102,8 @@ impl Query<'_> {
         Ok(self.nearest(recent, parts.into_iter().flatten().collect()))
     }
 
-    /// Places of candidates that are probably near: of those that are known, or else of those whose control points fit best.
+    /// Indices of candidates that are probably near: the given poses, or, where these are too few, those whose
+    /// control points fit best.
     fn probable(&self, near: &[u32], seen: &[f64]) -> Vec<usize> {
         let enough = self.enough();
         if near.len() >= enough || enough == 0 || enough >= seen.len() {
@@ -112,16 +115,16 @@ impl Query<'_> {
         slots
     }
 
-    /// The same among some candidates, which rise.
+    /// The nearest examples among some candidates, in ascending order.
     pub(super) fn among(&self, recent: &Recent, candidates: &[u32]) -> Vec<Example> {
         let share = self.share();
         let mut seen = vec![0.0; candidates.len()];
         if share > 0.0 {
             let mut planes = Vec::new();
             let wide = candidates.len().next_multiple_of(SIDE_BY_SIDE);
-            self.trails.fill(&self.poses, candidates, &mut planes);
+            self.trajectories.fill(&self.poses, candidates, &mut planes);
             seen.resize(wide, 0.0);
-            self.sight.distances(&planes, &mut seen);
+            self.observations.distances(&planes, &mut seen);
             seen.truncate(candidates.len());
             for distance in &mut seen {
                 *distance *= share;
@@ -136,22 +139,22 @@ impl Query<'_> {
         let all = self.lattice.poses();
         let tasks: Vec<Range<usize>> =
             (0..all.len()).step_by(TASK).map(|start| start..(start + TASK).min(all.len())).collect();
-        let work = all.len() * (self.sight.marks() * 2 + 4);
+        let work = all.len() * (self.observations.count() * 2 + 4);
         let parts = parallel::map(tasks, work, |_, range| {
             interrupt.check()?;
             let mut distances = vec![0.0; range.len()];
-            self.sight.distances(self.trails.planes(range.clone()), &mut distances);
+            self.observations.distances(self.trajectories.planes(range.clone()), &mut distances);
             let of_all = distances.into_iter().zip(range);
             Ok(of_all.reduce(|best, next| if next.0 < best.0 { next } else { best }))
         })?;
         let best = parts.into_iter().flatten().reduce(|best, next| if next.0 < best.0 { next } else { best });
         Ok(best.map(|(_, slot)| {
             let pose = all[slot] as usize;
-            (pose, self.sight.fit(&self.poses, self.trails.points(), pose, self.up))
+            (pose, self.observations.fit(&self.poses, self.trajectories.points(), pose, self.up))
         }))
     }
 
-    /// How a squared distance of control points counts.
+    /// Weight of a squared distance of control points.
     fn share(&self) -> f64 {
         if self.scale.is_finite() { 1.0 / (self.scale * self.scale) } else { 0.0 }
     }
@@ -170,13 +173,13 @@ impl Query<'_> {
         .collect()
     }
 
-    /// How many of the nearest are needed, however they lie: each that is taken keeps at most so many from being taken.
+    /// Number of nearest candidates that always suffices: each chosen example rules out a bounded number of others.
     fn enough(&self) -> usize {
         let beside = self.spacing.saturating_sub(1) / self.lattice.stride();
         self.count.saturating_mul(2 * beside + 1)
     }
 
-    /// Takes away what cannot be among those that are needed, and says beyond which distance nothing is.
+    /// Removes candidates that cannot be among those needed, and returns the upper limit of their distances.
     fn limit(&self, measured: &mut Vec<Measured>) -> f64 {
         let enough = self.enough();
         if measured.len() < enough || enough == 0 {

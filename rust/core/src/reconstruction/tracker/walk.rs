@@ -1,41 +1,42 @@
-//! From the examples of one frame to those of the next, along a graph of neighbours.
+//! Candidate examples of the next frame, along a graph of neighbours.
 //!
-//! J. Chai and J. K. Hodgins, "Performance animation from low-dimensional control signals", 2005. Candidates are the examples of
-//! the frame before, their successors, and the neighbours of both in the graph; since not every pose may be an example, those
-//! that lie less than a stride away from them. What was lost on the way is found again by full searches, at the start, in regular
-//! intervals, and where the last of the nearest is farther than it was.
+//! J. Chai and J. K. Hodgins, "Performance animation from low-dimensional control signals", 2005. The candidates are
+//! the examples of the previous frame, their successors, and the neighbours of both in the graph. Since not every
+//! pose may be an example, the candidates less than a stride away from these are taken. Full searches recover
+//! neighbours that the walk has lost: at the start, at regular intervals, and when the last neighbour is farther than
+//! expected.
 
 use super::lattice::Lattice;
 use super::search::Example;
 use crate::search::poses::graph::Graph;
-use crate::search::poses::walk::Trust;
+use crate::search::poses::walk::Fallback;
 
-/// What the frame before tells of the next.
+/// State of the walk after the previous frame.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Walk {
-    /// Its examples.
+    /// The examples of the previous frame.
     before: Vec<u32>,
     /// Frames since the last full search; `None`: there was none.
     since: Option<usize>,
-    /// The least distance of the last of the nearest since the last full search.
+    /// The smallest distance of the last neighbour since the last full search.
     least: f64,
 }
 
 impl Walk {
-    /// Whether the graph may be asked.
-    pub(super) fn goes_on(&self, trust: Trust) -> bool {
-        self.since.is_some_and(|since| since < trust.frames)
+    /// Whether the next search may use the graph.
+    pub(super) fn goes_on(&self, fallback: Fallback) -> bool {
+        self.since.is_some_and(|since| since < fallback.frames)
     }
 
     /// Whether examples that were found along the graph are near enough.
-    pub(super) fn trusts(&self, found: &[Example], count: usize, trust: Trust) -> bool {
+    pub(super) fn keeps(&self, found: &[Example], count: usize, fallback: Fallback) -> bool {
         found.len() == count
             && found.last().is_some_and(|last| {
-                !trust.ratio.is_finite() || last.square.sqrt() <= self.least * trust.ratio
+                !fallback.ratio.is_finite() || last.square.sqrt() <= self.least * fallback.ratio
             })
     }
 
-    /// What is known after a frame.
+    /// The state after a frame.
     pub(super) fn follow(&self, found: &[Example], full: bool) -> Self {
         let last = found.last().map_or(0.0, |last| last.square.sqrt());
         Self {
@@ -45,7 +46,7 @@ impl Walk {
         }
     }
 
-    /// Candidates up to two strides from the examples of the frame before, which rise.
+    /// Candidates up to two strides from the examples of the previous frame, in ascending order.
     pub(super) fn near(&self, lattice: &Lattice) -> Vec<u32> {
         let far = lattice.stride() + 1;
         let of_one = |&pose: &u32| {
@@ -58,7 +59,8 @@ impl Walk {
         near
     }
 
-    /// Candidates near the examples of the frame before, the poses after them, and the neighbours of both; they rise.
+    /// Candidates near the examples of the previous frame, near their successors, and near the neighbours of both; in
+    /// ascending order.
     pub(super) fn around(&self, lattice: &Lattice, graph: Graph<'_>, seen: &mut Vec<u64>) -> Vec<u32> {
         seen.resize(lattice.words(), 0);
         let mut near = Vec::new();
@@ -78,7 +80,7 @@ impl Walk {
         for &candidate in &near {
             seen[candidate as usize / 64] = 0;
         }
-        // In the order of the memory.
+        // In memory order.
         near.sort_unstable();
         near
     }

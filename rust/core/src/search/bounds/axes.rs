@@ -1,4 +1,4 @@
-//! Numbers of a frame whose squared differences add up to no more than squared angles.
+//! Coordinates of a frame whose squared differences sum to at most the squared rotation angles.
 
 use super::kernels;
 use crate::Real;
@@ -6,14 +6,14 @@ use crate::search::diagonal::Measure;
 use crate::search::features::{Features, Kind};
 use std::ops::Range;
 
-/// The pairs of a quaternion's components: a rotation's numbers that do not depend on the sign.
+/// Index pairs of a quaternion's components: their products do not depend on the quaternion's sign.
 const PAIRS: [[usize; 2]; 10] =
     [[0, 0], [1, 1], [2, 2], [3, 3], [0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
-/// Axes of a joint's chord.
+/// Coordinates (axes) of one joint's chord.
 pub(super) const GROUP: usize = 4;
 
-/// A number: `factor · x − offset` or `factor · x · y − offset`, with components `x` and `y` of a joint.
+/// One coordinate: `factor · x − offset` or `factor · x · y − offset`, with components `x` and `y` of a joint.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Axis<T> {
     joint: usize,
@@ -28,7 +28,7 @@ impl<T: Real> Axis<T> {
         Self { joint, component, other, factor: square.sqrt(), offset: T::ZERO }
     }
 
-    /// Writes the numbers of some columns.
+    /// Writes this coordinate for consecutive columns, from the column `from` on.
     fn write(&self, features: &Features<'_, T>, from: usize, out: &mut [T]) {
         let row = features.joints[self.joint].row;
         let plane = |component: usize| &features.planes.row(row + component)[from..from + out.len()];
@@ -40,11 +40,12 @@ impl<T: Real> Axis<T> {
     }
 }
 
-/// What is asked of all frames.
+/// The coordinates that are computed for every frame.
 #[derive(Debug, Clone)]
 pub(super) struct Axes<T> {
     pub(super) axes: Vec<Axis<T>>,
-    /// How many groups of [`GROUP`] keep their signs: of the others' products the magnitude counts.
+    /// Number of leading groups of [`GROUP`] whose products keep their sign. The remaining groups add the magnitude
+    /// of theirs.
     pub(super) signed: usize,
 }
 
@@ -68,8 +69,8 @@ impl<T: Real> Axes<T> {
         Self { axes, signed }
     }
 
-    /// Points between which distances are no longer than angles, whatever the signs: `θ² ≥ 4 sin²(θ/2) = 2 |aaᵀ − bbᵀ|²`
-    /// where signs are not known.
+    /// Points whose distances are at most the angles for either sign of a quaternion. Where signs are not known: `θ²
+    /// ≥ 4 sin²(θ/2) = 2 |aaᵀ − bbᵀ|²`.
     pub(super) fn points(measure: &Measure<T>, kinds: &[Kind]) -> Self {
         let mut axes = Vec::new();
         for joint in measure.joints.clone() {
@@ -86,12 +87,13 @@ impl<T: Real> Axes<T> {
         Self { signed: axes.len().div_ceil(GROUP), axes }
     }
 
-    /// How many.
+    /// The number of coordinates.
     pub(super) fn count(&self) -> usize {
         self.axes.len()
     }
 
-    /// Takes away the means over some columns where signs are kept, so that the numbers are small and roundings with them.
+    /// Sets the offsets of the signed coordinates to their means over `columns`: centred values are small, and so are
+    /// their rounding errors.
     pub(super) fn centre(&mut self, features: &Features<'_, T>, columns: &[usize]) {
         let share = 1.0 / columns.len().max(1) as f64;
         for axis in self.axes.iter_mut().take(GROUP * self.signed) {
@@ -105,14 +107,14 @@ impl<T: Real> Axes<T> {
         }
     }
 
-    /// Writes the numbers of a column.
+    /// Writes all coordinates of one column.
     pub(super) fn read(&self, features: &Features<'_, T>, column: usize, numbers: &mut [T]) {
         for (axis, number) in self.axes.iter().zip(numbers) {
             axis.write(features, column, std::slice::from_mut(number));
         }
     }
 
-    /// Runs `work(first, planes)` for the axes of each group in some columns.
+    /// Runs `work(first, planes)` for each group of coordinates over a range of columns.
     pub(super) fn each_group(
         &self,
         features: &Features<'_, T>,

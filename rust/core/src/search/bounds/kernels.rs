@@ -6,10 +6,10 @@ use crate::simd::multiversion;
 /// Columns of a panel: one vector of float32 at the widest level.
 pub(super) const LANES: usize = 16;
 
-/// Rows of a tile of products whose sums stay in registers.
+/// Rows of a tile of inner products, whose sums stay in registers.
 pub(super) const TALL: usize = 4;
 
-/// Numbers that are multiplied before their sum is added to another.
+/// Terms of an inner product that are summed before they are added to the running sum.
 const GROUP: usize = super::axes::GROUP;
 
 multiversion! {
@@ -56,7 +56,7 @@ multiversion! {
     }
 }
 
-/// Adds the products of a group of numbers of a row with those of a panel.
+/// Adds the inner product of one group of a row with the same group of a panel.
 #[inline(always)]
 fn add_group<T: Real, const SIGNED: bool>(
     sums: [T; LANES],
@@ -72,8 +72,8 @@ fn add_group<T: Real, const SIGNED: bool>(
 }
 
 multiversion! {
-    /// Inner products of rows with the columns of panels, a row of `out` for each row; of the groups from `signed` on the
-    /// magnitude counts. Rows come in multiples of [`TALL`].
+    /// Inner products of rows with the columns of panels; one row of `out` per row. Groups from `signed` on add the
+    /// magnitude of their product. The number of rows is a multiple of [`TALL`].
     pub(super) fn products<T: Real>(out: &mut [T], rows: &[T], panels: &[T], dims: usize, signed: usize) {
         let width = panels.len() / dims;
         for (panel, numbers) in panels.chunks_exact(dims * LANES).enumerate() {
@@ -113,18 +113,18 @@ multiversion! {
     }
 }
 
-/// What is known of a frame, or of some in sequence.
+/// Bound data of one frame, or of a block of consecutive frames.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Row<T> {
-    /// Half the square of its numbers.
+    /// Half the sum of its squared coordinates.
     pub(super) half: T,
-    /// How far its farthest neighbour is.
+    /// Distance of its farthest neighbour found so far.
     pub(super) limit: T,
-    /// How far what it stands for may be from it.
+    /// Largest distance between this row and the patches that it represents.
     pub(super) radius: T,
 }
 
-/// What is known of candidates.
+/// Bound data of candidates: the fields of [`Row`], one array each.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Columns<'a, T> {
     pub(super) halves: &'a [T],
@@ -132,15 +132,16 @@ pub(super) struct Columns<'a, T> {
     pub(super) radii: &'a [T],
 }
 
-/// Not negative if a product is that of a pair that may be near enough for one of both.
+/// Non-negative if the pair with this inner product may be within the limit of either of its two patches.
 #[inline(always)]
 fn nearness<T: Real>(product: T, row: Row<T>, half: T, limit: T, radius: T) -> T {
+    // |a − b|² / 2 = half_a + half_b − a·b, compared with reach² / 2.
     let reach = row.limit.max(limit) + (row.radius + radius);
     (product + T::HALF * reach * reach) - (row.half + half)
 }
 
 multiversion! {
-    /// Marks the rows that have a product that is near enough.
+    /// Marks each row that has at least one pair with non-negative `nearness`.
     pub(super) fn mark_rows<T: Real>(marks: &mut [u8], products: &[T], rows: &[Row<T>], columns: Columns<'_, T>) {
         let width = columns.halves.len();
         let halves = columns.halves.as_chunks::<LANES>().0;
@@ -166,7 +167,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Marks the panels that have such a product.
+    /// Marks each panel that has at least one pair with non-negative `nearness`.
     pub(super) fn mark_panels<T: Real>(marks: &mut [u8], products: &[T], rows: &[Row<T>], columns: Columns<'_, T>) {
         let width = columns.halves.len();
         let halves = columns.halves.as_chunks::<LANES>().0;
@@ -192,7 +193,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Marks such products of a row, and tells whether there is one.
+    /// Marks the pairs of one row with non-negative `nearness`; returns whether there is one.
     pub(super) fn mark_products<T: Real>(marks: &mut [u8], products: &[T], row: Row<T>, columns: Columns<'_, T>) -> bool {
         let n = marks.len();
         let (products, halves) = (&products[..n], &columns.halves[..n]);
@@ -208,7 +209,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Inner products of each of two rows with each of two others.
+    /// Inner products of each of two rows with each of two other rows.
     pub(super) fn four_products<T: Real>(rows: [&[T]; 2], others: [&[T]; 2]) -> [[T; 2]; 2] {
         let [a, b] = rows.map(|row| row.as_chunks::<LANES>().0);
         let [c, d] = others.map(|row| row.as_chunks::<LANES>().0);

@@ -1,14 +1,15 @@
-//! What patches are never nearer than, told without angles.
+//! Lower bounds of patch distances that need no angles.
 //!
-//! Two unit quaternions `a` and `b` are turned by `θ ≥ 2 |a ∓ b|` against each other, and `|a ∓ b|²` is `|a|² + |b|² − 2 |a·b|`. So
-//! squared distances of patches are at least sums of inner products along diagonals, which are several times as cheap as sums
-//! of angles: the *chords*. The mean over the frames of a patch, as a point in space, and of that the few coordinates in which
-//! means differ most, tell less and cost less still: the *points*, one inner product for a pair of patches.
+//! For unit quaternions `a` and `b`, the rotation angle between them satisfies `θ ≥ 2 |a ∓ b|`, and `|a ∓ b|²` is
+//! `|a|² + |b|² − 2 |a·b|`. So a squared patch distance is at least a sum of inner products along a diagonal, several
+//! times as cheap as a sum of angles: the *chord bound*. The mean over the frames of a patch is a point in space, and
+//! its projection on the few directions of largest variance is shorter still. Both give a weaker but cheaper bound,
+//! one inner product for each pair of patches: the *point bound*.
 //!
-//! - `axes`: the numbers of a frame;
+//! - `axes`: the coordinates of a frame;
 //! - `points`: patches as points;
-//! - `stage`: the numbers of many frames side by side, and what they tell;
-//! - `strip`: the numbers of a few frames, which are compared with all of those;
+//! - `stage`: the coordinates of all candidates side by side, and the bounds from their inner products;
+//! - `strip`: the coordinates of a few frames, compared with all candidates;
 //! - `kernels`: the vectorised loops.
 
 mod axes;
@@ -29,28 +30,29 @@ pub(crate) use strip::Strip;
 /// Frames of a strip.
 pub(crate) const ROWS: usize = 128;
 
-/// Candidates of a tile: its products with a strip stay within the second-level cache.
+/// Candidates of a tile. The products of a tile with a strip fit in the second-level cache.
 pub(crate) const COLUMNS: usize = 128;
 
-/// Frames of the longest patch whose chords are added up: of longer ones, tiles would be little beside their borders.
+/// Longest patch, in frames, for which the chord bound is used. For longer patches the border of a tile outweighs the
+/// tile.
 pub(crate) const LONGEST: usize = 64;
 
-/// Patches of a block.
+/// Consecutive patches per block.
 const BLOCK: usize = 2;
 
-/// Fewer numbers of a frame are not worth points.
+/// Least number of coordinates per frame for which the point bound pays off.
 const FEW_AXES: usize = 2 * points::WIDTH;
 
-/// Fewer candidates are not worth finding the directions of points.
+/// Least number of candidates for which it pays off to compute the directions of projection.
 const FEW_CANDIDATES: usize = 2048;
 
-/// Patches from which the directions are learnt.
+/// Number of patches from which the directions of projection are computed.
 const SAMPLE: usize = 256;
 
 /// Frames per task.
 const TASK: usize = 1024;
 
-/// Candidates in sequence, ready to be compared with frames.
+/// Bound data of consecutive candidates, ready to be compared with frames.
 #[derive(Debug)]
 pub(crate) struct Bounds<T> {
     kinds: Vec<Kind>,
@@ -59,9 +61,9 @@ pub(crate) struct Bounds<T> {
 }
 
 impl<T: Real> Bounds<T> {
-    /// Reads the candidates of a side, all of whose samples must be there.
+    /// Reads the candidates of `side`, which must have no missing samples.
     ///
-    /// What they are compared with must have joints of the same kinds.
+    /// The frames that are compared with them must have joints of the same kinds.
     pub(crate) fn new(
         measure: &Measure<T>,
         side: &Side<'_, T>,
@@ -120,8 +122,8 @@ impl<T: Real> Bounds<T> {
         Ok(stage)
     }
 
-    /// Whether they tell anything about frames, which have to be compared as the candidates are.
-    pub(crate) fn tell(&self, features: &Features<'_, T>) -> bool {
+    /// Whether the bounds hold for `features`: a bound exists and the kinds of all joints agree.
+    pub(crate) fn apply_to(&self, features: &Features<'_, T>) -> bool {
         let any = self.chords.is_some() || self.points.is_some();
         any && self.kinds.iter().zip(features.joints).all(|(kind, joint)| *kind == joint.kind)
     }

@@ -1,4 +1,4 @@
-//! Patches as points: the means of their frames, of a few patches in sequence at once.
+//! Patches as points: the mean of a patch's frames, and the means of blocks of consecutive patches.
 
 use super::axes::{Axes, GROUP};
 use super::kernels::{self, LANES};
@@ -11,60 +11,60 @@ use crate::search::kernels::sliding_sums;
 use crate::search::poses::{Segments, directions};
 use crate::{Error, Real};
 
-/// Coordinates along which blocks differ most.
+/// Number of directions of projection.
 pub(super) const WIDTH: usize = 16;
 
-/// Points of candidates.
+/// The candidates as points.
 #[derive(Debug)]
 pub(super) struct Points<T> {
     pub(super) axes: Axes<T>,
-    /// Numbers of a point: as many as axes, and zeros up to whole vectors.
+    /// Length of a point: the number of coordinates, padded with zeros to whole vectors.
     pub(super) dims: usize,
-    /// Directions, `(WIDTH, dims)`.
+    /// Directions of projection, `(WIDTH, dims)`.
     pub(super) basis: Vec<T>,
-    /// Blocks along the directions.
-    pub(super) shadows: Stage<T>,
+    /// Blocks, projected on the directions.
+    pub(super) projections: Stage<T>,
     /// Blocks.
     pub(super) blocks: Stage<T>,
     /// Points, `(candidates, dims)`.
     pub(super) rows: Vec<T>,
-    /// Half the squares of the points' lengths.
+    /// Half the squared lengths of the points.
     pub(super) halves: Vec<T>,
 }
 
-/// What is made of a few patches in sequence; planes of all of them or of all blocks, one after the other.
+/// Points, blocks and projections of consecutive patches, as planes: one plane per coordinate.
 #[derive(Debug, Default)]
 pub(super) struct Summary<T> {
     count: usize,
-    /// Numbers of a point.
+    /// Length of a point.
     dims: usize,
     points: Vec<T>,
     blocks: Vec<T>,
-    shadows: Vec<T>,
-    /// The squares of the lengths of the points, the blocks and their shadows.
+    projections: Vec<T>,
+    /// The squared lengths of the points, the blocks and the projections.
     pub(super) squares: [Vec<T>; 3],
-    /// Of each block, the distance of the farthest point.
+    /// For each block, the distance of its farthest point from its mean.
     pub(super) radii: Vec<T>,
-    /// The length of the longest vector of a frame, times the root of the window.
+    /// The length of the longest frame vector, times the square root of the patch length in frames.
     pub(super) longest: T,
     planes: Vec<T>,
     values: Vec<T>,
-    spare: Vec<T>,
+    scratch: Vec<T>,
 }
 
-/// The planes of a group.
+/// The [`GROUP`] planes from `first` on.
 fn group<T>(planes: &[T], first: usize, length: usize) -> [&[T]; GROUP] {
     [0, 1, 2, 3].map(|i| &planes[(first + i) * length..(first + i + 1) * length])
 }
 
-/// Zeros, as many as are asked for.
+/// Resizes to `length` zeros.
 fn clear<T: Real>(numbers: &mut Vec<T>, length: usize) {
     numbers.clear();
     numbers.resize(length, T::ZERO);
 }
 
 impl<T: Real> Summary<T> {
-    /// Reads `count` patches from the one in the column `at`.
+    /// Reads `count` patches, from the one centred on the column `at`.
     pub(super) fn read(
         &mut self,
         axes: &Axes<T>,
@@ -77,28 +77,30 @@ impl<T: Real> Summary<T> {
         let window = measure.window();
         let (length, start) = (count + window - 1, at - measure.before);
         let dims = axes.count().next_multiple_of(LANES);
-        let Self { points, blocks, shadows, squares, radii, planes, values, spare, .. } = self;
+        let Self { points, blocks, projections, squares, radii, planes, values, scratch, .. } = self;
         (self.count, self.dims) = (count, dims);
         let several = count.div_ceil(BLOCK);
         clear(points, dims * count);
         clear(blocks, dims * several);
-        clear(shadows, WIDTH * several);
-        let [of_points, of_blocks, of_shadows] = squares;
+        clear(projections, WIDTH * several);
+        let [of_points, of_blocks, of_projections] = squares;
         clear(of_points, count);
         clear(of_blocks, several);
-        clear(of_shadows, several);
+        clear(of_projections, several);
         clear(radii, several);
         if count == 0 {
             return;
         }
         let mut lengths = vec![T::ZERO; length];
+        // A point is the sum over the patch divided by √window. By Cauchy–Schwarz, point distances are at most patch
+        // distances.
         let share = T::from_f64(1.0 / (window as f64).sqrt());
         axes.each_group(features, start..start + length, planes, |axis, group| {
             kernels::add_squares(&mut lengths, group);
             for (plane, sums) in group.into_iter().zip(points[axis * count..].chunks_exact_mut(count)) {
                 values.clear();
                 values.extend_from_slice(plane);
-                sliding_sums(values, spare, window, sums);
+                sliding_sums(values, scratch, window, sums);
                 for sum in sums {
                     *sum *= share;
                 }
@@ -106,12 +108,14 @@ impl<T: Real> Summary<T> {
         });
         let longest = lengths.iter().fold(T::ZERO, |most, square| most.max(*square));
         self.longest = (longest * T::from_f64(window as f64)).sqrt();
+        // A block is the mean of its points.
         for (plane, means) in points.chunks_exact(count).zip(blocks.chunks_exact_mut(several)) {
             for (mean, members) in means.iter_mut().zip(plane.chunks(BLOCK)) {
                 let sum = members.iter().fold(T::ZERO, |sum, x| sum + *x);
                 *mean = sum * T::from_f64(1.0 / members.len() as f64);
             }
         }
+        // The radius of a block is the distance of its farthest point from that mean.
         let mut apart = vec![T::ZERO; count];
         for (plane, means) in points.chunks_exact(count).zip(blocks.chunks_exact(several)) {
             for ((members, mean), apart) in plane.chunks(BLOCK).zip(means).zip(apart.chunks_mut(BLOCK)) {
@@ -127,13 +131,13 @@ impl<T: Real> Summary<T> {
             kernels::add_squares(of_points, group(points, first, count));
             let planes = group(blocks, first, several);
             kernels::add_squares(of_blocks, planes);
-            for (shadow, vector) in shadows.chunks_exact_mut(several).zip(basis.chunks_exact(dims)) {
+            for (projection, vector) in projections.chunks_exact_mut(several).zip(basis.chunks_exact(dims)) {
                 let by = [vector[first], vector[first + 1], vector[first + 2], vector[first + 3]];
-                kernels::add_combination(shadow, planes, by);
+                kernels::add_combination(projection, planes, by);
             }
         }
         for first in (0..WIDTH).step_by(GROUP) {
-            kernels::add_squares(of_shadows, group(shadows, first, several));
+            kernels::add_squares(of_projections, group(projections, first, several));
         }
     }
 
@@ -147,21 +151,21 @@ impl<T: Real> Summary<T> {
         write(&self.blocks, self.radii.len(), rows);
     }
 
-    /// Writes the shadows of the blocks, row by row.
-    pub(super) fn write_shadows(&self, rows: &mut [T]) {
-        write(&self.shadows, self.radii.len(), rows);
+    /// Writes the projections of the blocks, row by row.
+    pub(super) fn write_projections(&self, rows: &mut [T]) {
+        write(&self.projections, self.radii.len(), rows);
     }
 
-    /// Runs `work(first, planes)` for each group of numbers of the blocks.
-    fn each_group(&self, shadows: bool, mut work: impl FnMut(usize, [&[T]; GROUP])) {
-        let (planes, dims) = if shadows { (&self.shadows, WIDTH) } else { (&self.blocks, self.dims) };
+    /// Runs `work(first, planes)` for each group of coordinates of the blocks or of their projections.
+    fn each_group(&self, projections: bool, mut work: impl FnMut(usize, [&[T]; GROUP])) {
+        let (planes, dims) = if projections { (&self.projections, WIDTH) } else { (&self.blocks, self.dims) };
         for first in (0..dims).step_by(GROUP) {
             work(first, group(planes, first, self.radii.len()));
         }
     }
 }
 
-/// Turns planes of a length into rows.
+/// Transposes planes of `length` elements into rows.
 fn write<T: Real>(planes: &[T], length: usize, rows: &mut [T]) {
     if length == 0 {
         return;
@@ -175,7 +179,7 @@ fn write<T: Real>(planes: &[T], length: usize, rows: &mut [T]) {
 }
 
 impl<T: Real> Points<T> {
-    /// Reads the candidates of a side; directions are learnt from a sample of their columns.
+    /// Reads the candidates of a side; the directions come from a sample of their columns.
     pub(super) fn new(
         axes: Axes<T>,
         sample: &[usize],
@@ -192,38 +196,38 @@ impl<T: Real> Points<T> {
         let basis: Vec<T> = directions(&segments, WIDTH).into_iter().map(T::from_f64).collect();
         let blocks = side.count.div_ceil(BLOCK);
         let per_tile = COLUMNS / BLOCK;
-        let mut shadows = Stage::new(measure, WIDTH, WIDTH / GROUP, blocks, per_tile, 0);
+        let mut projections = Stage::new(measure, WIDTH, WIDTH / GROUP, blocks, per_tile, 0);
         let mut several = Stage::new(measure, dims, dims / GROUP, blocks, per_tile, 0);
         let mut rows = vec![T::ZERO; side.count * dims];
-        let tasks: Vec<_> = shadows
+        let tasks: Vec<_> = projections
             .tasks(TASK / BLOCK)
             .into_iter()
             .zip(several.tasks(TASK / BLOCK))
             .zip(rows.chunks_mut(TASK * dims))
             .collect();
         let parts =
-            parallel::map(tasks, side.count * dims * 8, |task, ((mut shadows, mut blocks), rows)| {
+            parallel::map(tasks, side.count * dims * 8, |task, ((mut projections, mut blocks), rows)| {
                 interrupt.check()?;
                 let first = task * TASK;
                 let mut summary = Summary::default();
                 summary.read(&axes, &basis, measure, &side.features, side.at + first, rows.len() / dims);
                 summary.write_points(rows);
-                summary.each_group(true, |first, group| shadows.write(first, group));
+                summary.each_group(true, |first, group| projections.write(first, group));
                 summary.each_group(false, |first, group| blocks.write(first, group));
                 Ok((summary.squares, summary.radii, summary.longest))
             })?;
         let longest = parts.iter().fold(T::ZERO, |most, (.., longest)| most.max(*longest));
         let squares = |i: usize| parts.iter().flat_map(|(squares, ..)| &squares[i]).copied().collect();
         let radii: Vec<T> = parts.iter().flat_map(|(_, radii, _)| radii).copied().collect();
-        let (mut of_points, of_blocks, of_shadows): (Vec<T>, Vec<T>, Vec<T>) =
+        let (mut of_points, of_blocks, of_projections): (Vec<T>, Vec<T>, Vec<T>) =
             (squares(0), squares(1), squares(2));
-        for (stage, squares) in [(&mut shadows, of_shadows), (&mut several, of_blocks)] {
+        for (stage, squares) in [(&mut projections, of_projections), (&mut several, of_blocks)] {
             stage.project(dims + measure.window(), longest);
             stage.add_up(&squares, 1);
             stage.set_radii(&radii);
         }
         let mut halves = vec![T::ZERO; side.count];
         several.half(&mut of_points, 1, &mut halves);
-        Ok(Self { axes, dims, basis, shadows, blocks: several, rows, halves })
+        Ok(Self { axes, dims, basis, projections, blocks: several, rows, halves })
     }
 }

@@ -1,4 +1,4 @@
-//! Numbers of many frames side by side, and what their inner products with other frames' tell.
+//! Coordinates of all candidates side by side, and the bounds from their inner products with other frames.
 
 use super::axes::GROUP;
 use super::kernels::LANES;
@@ -6,42 +6,43 @@ use crate::Real;
 use crate::search::diagonal::Measure;
 use crate::search::kernels::sliding_sums;
 
-/// Roundings, in units of the last place, by which a distance may be less than its bound.
+/// Rounding errors, in units of the last place, by which a computed distance may fall below its bound.
 const ROUNDINGS: f64 = 512.0;
 
-/// Half a square that no sum of products comes near to.
+/// Half squared length of a padding column: too large for any pair to be near.
 const NEVER: f64 = 1e37;
 
-/// The root of what stands for a limit that is not known.
+/// Square root of the value that stands for an unknown limit.
 const ALWAYS: f64 = 1e18;
 
-/// Candidates' numbers, in panels of [`LANES`] columns: the first numbers of all columns of a panel, then the second ones.
+/// Candidates' coordinates in panels of [`LANES`] columns: the first coordinates of all columns of a panel, then the
+/// second ones.
 #[derive(Debug)]
 pub(super) struct Stage<T> {
-    /// Numbers of a column.
+    /// Coordinates of a column.
     pub(super) dims: usize,
-    /// How many groups of numbers keep the signs of their products.
+    /// Number of leading groups whose products keep their sign.
     pub(super) signed: usize,
-    /// Columns beyond a tile that belong to it.
+    /// Columns past the end of a tile that its patches need.
     pub(super) border: usize,
     pub(super) panels: Vec<T>,
-    /// Half the squares of the numbers of each candidate.
+    /// Half the squared length of each candidate.
     pub(super) halves: Vec<T>,
-    /// How far what a candidate stands for may be from it.
+    /// Largest distance between a candidate and the patches that it represents.
     pub(super) radii: Vec<T>,
-    /// What is left of a half square if roundings take their share.
+    /// Factor below 1 by which half squared lengths are reduced to allow for rounding.
     keep: T,
-    /// The root of a sum of squares for each unit of a distance.
+    /// Converts a distance to the square root of a sum of squares: √divisor.
     scale: T,
-    /// What roundings of the numbers add to such a root.
+    /// Absolute rounding error of such a square root.
     slack: T,
-    /// What they add for each unit of the longest of the vectors that the numbers are coordinates of.
+    /// Rounding error of the projections, per unit of the longest projected vector.
     share: T,
-    /// The longest vector of the candidates.
+    /// Length of the candidates' longest vector.
     longest: T,
 }
 
-/// Some panels in sequence.
+/// Consecutive panels.
 #[derive(Debug)]
 pub(super) struct Panels<'a, T> {
     numbers: &'a mut [T],
@@ -49,7 +50,7 @@ pub(super) struct Panels<'a, T> {
 }
 
 impl<T: Real> Panels<'_, T> {
-    /// Writes a group of numbers, from the one with the number `first`, of the first columns.
+    /// Writes a group of coordinates, from the index `first` on, for the first columns.
     pub(super) fn write(&mut self, first: usize, group: [&[T]; GROUP]) {
         for (i, plane) in group.into_iter().enumerate() {
             for (panel, values) in self.numbers.chunks_exact_mut(self.dims * LANES).zip(plane.chunks(LANES)) {
@@ -61,7 +62,7 @@ impl<T: Real> Panels<'_, T> {
 }
 
 impl<T: Real> Stage<T> {
-    /// Room for the candidates of a side.
+    /// Allocates the arrays for `count` candidates in tiles of `tile`.
     pub(super) fn new(
         measure: &Measure<T>,
         dims: usize,
@@ -90,13 +91,13 @@ impl<T: Real> Stage<T> {
         }
     }
 
-    /// The panels of `length` columns each.
+    /// Splits the panels into tasks of `length` columns.
     pub(super) fn tasks(&mut self, length: usize) -> Vec<Panels<'_, T>> {
         let dims = self.dims;
         self.panels.chunks_mut(length * dims).map(|numbers| Panels { numbers, dims }).collect()
     }
 
-    /// Adds up the squares of the columns of each candidate.
+    /// Sets each candidate's half squared length from the squares of its columns.
     pub(super) fn add_up(&mut self, squares: &[T], window: usize) {
         let count = squares.len() + 1 - window.min(squares.len() + 1);
         let mut halves = vec![T::ZERO; count];
@@ -104,7 +105,7 @@ impl<T: Real> Stage<T> {
         self.halves[..count].copy_from_slice(&halves);
     }
 
-    /// Half the sums of squares, less what roundings may have added.
+    /// Half the sliding sums of squares, reduced by their possible rounding errors.
     pub(super) fn half(&self, squares: &mut Vec<T>, window: usize, halves: &mut [T]) {
         sliding_sums(squares, &mut Vec::new(), window, halves);
         for half in halves {
@@ -112,25 +113,27 @@ impl<T: Real> Stage<T> {
         }
     }
 
-    /// Tells that numbers are coordinates, each a sum of so many `terms`, of vectors of which the longest is so long.
+    /// Sets the rounding error of projections: each coordinate is a sum of `terms` products, and the longest
+    /// projected vector has the length `longest`.
     pub(super) fn project(&mut self, terms: usize, longest: T) {
         self.share = T::EPSILON * T::from_f64(4.0 * terms as f64);
         self.longest = longest;
     }
 
-    /// Tells how far what each candidate stands for may be from it.
+    /// Sets the largest distance between each candidate and the patches that it represents.
     pub(super) fn set_radii(&mut self, radii: &[T]) {
         self.radii[..radii.len()].copy_from_slice(radii);
     }
 
-    /// What a limit of distances comes to, for frames whose longest vector is so long.
+    /// Converts a limit of distances to the scale of the coordinates, with rounding allowed for. `longest` is the
+    /// length of the frames' longest vector.
     pub(super) fn reach(&self, limit: T, longest: T) -> T {
         let slack = self.slack + self.share * self.longest.max(longest);
         (limit * self.scale * above::<T>() + slack).min(T::from_f64(ALWAYS))
     }
 }
 
-/// What makes up for roundings.
+/// Factor above 1 that makes up for rounding errors.
 pub(super) fn above<T: Real>() -> T {
     T::from_f64(1.0 + ROUNDINGS * T::EPSILON.to_f64())
 }

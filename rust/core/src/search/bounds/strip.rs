@@ -1,4 +1,4 @@
-//! The numbers of a few frames in sequence, which are compared with all candidates.
+//! Coordinates of a few consecutive frames, compared with all candidates.
 
 use super::axes::GROUP;
 use super::kernels::{self, Columns, LANES, Row, TALL};
@@ -11,10 +11,11 @@ use crate::search::features::Side;
 use crate::search::kernels::sums_along;
 use std::ops::Range;
 
-/// Of so many pairs of a tile's part one has to be near for the chords of all to be looked at.
+/// The chord bound is evaluated for a whole part of a tile if at least one in `DENSE` of its pairs of blocks survives
+/// the point bound.
 const DENSE: usize = 8;
 
-/// Numbers row by row.
+/// Coordinates row by row, and their bound data.
 #[derive(Debug, Default)]
 struct Rows<T> {
     numbers: Vec<T>,
@@ -45,7 +46,7 @@ impl<T: Real> Rows<T> {
     }
 }
 
-/// Limits of the candidates of a tile.
+/// Limits of the candidates of a tile, one array per bound.
 #[derive(Debug, Default)]
 struct Limits<T> {
     chords: Vec<T>,
@@ -53,19 +54,19 @@ struct Limits<T> {
     points: Vec<T>,
 }
 
-/// At most [`ROWS`](super::ROWS) frames, and memory for their comparison with a tile.
+/// At most [`ROWS`](super::ROWS) frames, and scratch memory for comparing them with a tile.
 #[derive(Debug, Default)]
 pub(crate) struct Strip<T> {
     frames: usize,
     chords: Rows<T>,
-    shadows: Rows<T>,
+    projections: Rows<T>,
     blocks: Rows<T>,
     points: Rows<T>,
     others: Limits<T>,
     summary: Summary<T>,
     products: Vec<T>,
     sums: Vec<T>,
-    spare: Vec<T>,
+    scratch: Vec<T>,
     marks: Vec<u8>,
     near: Vec<(usize, usize)>,
 }
@@ -86,7 +87,7 @@ impl<T: Real> Strip<T> {
             let length = frames.len() + stage.border;
             let mut squares = vec![T::ZERO; length];
             let rows = self.chords.reset(length, stage.dims);
-            axes.each_group(features, start..start + length, &mut self.spare, |first, [a, b, c, d]| {
+            axes.each_group(features, start..start + length, &mut self.scratch, |first, [a, b, c, d]| {
                 kernels::add_squares(&mut squares, [a, b, c, d]);
                 for (i, row) in rows.chunks_exact_mut(stage.dims).take(length).enumerate() {
                     row[first..first + GROUP].copy_from_slice(&[a[i], b[i], c[i], d[i]]);
@@ -95,30 +96,30 @@ impl<T: Real> Strip<T> {
             self.chords.halve(stage, &mut squares, measure.window());
         }
         if let Some(points) = &bounds.points {
-            let Self { shadows, blocks, points: own, summary, .. } = self;
+            let Self { projections, blocks, points: own, summary, .. } = self;
             summary.read(&points.axes, &points.basis, measure, features, at, frames.len());
             let count = summary.radii.len();
-            summary.write_shadows(shadows.reset(count, WIDTH));
+            summary.write_projections(projections.reset(count, WIDTH));
             summary.write_blocks(blocks.reset(count, points.dims));
             summary.write_points(own.reset(frames.len(), points.dims));
-            let [of_points, of_blocks, of_shadows] = &mut summary.squares;
+            let [of_points, of_blocks, of_projections] = &mut summary.squares;
             own.halve(&points.blocks, of_points, 1);
             blocks.halve(&points.blocks, of_blocks, 1);
-            shadows.halve(&points.shadows, of_shadows, 1);
+            projections.halve(&points.projections, of_projections, 1);
         }
     }
 
-    /// Takes on how far the farthest neighbours are that are known.
+    /// Sets the frames' limits: the distance of each frame's farthest neighbour found so far.
     pub(crate) fn limit(&mut self, bounds: &Bounds<T>, limits: &[T]) {
         if let Some((_, stage)) = &bounds.chords {
             let limits = limits.iter().map(|limit| stage.reach(*limit, T::ZERO));
             self.chords.know(limits, std::iter::repeat(T::ZERO));
         }
         if let Some(points) = &bounds.points {
-            let Self { shadows, blocks, points: own, summary, .. } = self;
+            let Self { projections, blocks, points: own, summary, .. } = self;
             let reach = |limit: T| points.blocks.reach(limit, summary.longest);
             own.know(limits.iter().map(|limit| reach(*limit)), std::iter::repeat(T::ZERO));
-            for rows in [blocks, shadows] {
+            for rows in [blocks, projections] {
                 rows.know(
                     limits.chunks(BLOCK).map(|limits| reach(farthest(limits))),
                     summary.radii.iter().copied(),
@@ -127,7 +128,7 @@ impl<T: Real> Strip<T> {
         }
     }
 
-    /// Takes on how far those of the candidates of a tile are; 0 where candidates look for none.
+    /// Sets the limits of the candidates of a tile; 0 where a candidate needs no neighbours.
     pub(crate) fn limit_others(&mut self, bounds: &Bounds<T>, limits: &[T; COLUMNS]) {
         let Limits { chords, blocks, points } = &mut self.others;
         if let Some((_, stage)) = &bounds.chords {
@@ -143,12 +144,12 @@ impl<T: Real> Strip<T> {
         }
     }
 
-    /// Runs `work(frame, candidate)` for the pairs of the strip with a tile of candidates that may be near enough.
+    /// Runs `work(frame, candidate)` for the pairs of the strip with a tile of candidates that survive the bounds.
     pub(crate) fn sift(&mut self, bounds: &Bounds<T>, tile: usize, mut work: impl FnMut(usize, usize)) {
         let first = tile * COLUMNS;
         let (mut rows, mut columns) = (0..self.frames, first..first + COLUMNS);
         if let Some(points) = &bounds.points {
-            let Some(part) = self.part(&points.shadows, tile) else { return };
+            let Some(part) = self.part(&points.projections, tile) else { return };
             self.near_blocks(&points.blocks, tile, &part);
             rows = part.0.start * BLOCK..self.frames.min(part.0.end * BLOCK);
             columns = part.1.start * BLOCK..part.1.end * BLOCK;
@@ -163,27 +164,28 @@ impl<T: Real> Strip<T> {
         }
     }
 
-    /// The blocks of a tile between which all pairs lie whose shadows are near enough.
+    /// The smallest range of block rows and columns of a tile that contains all pairs whose projections are near
+    /// enough.
     fn part(&mut self, stage: &Stage<T>, tile: usize) -> Option<(Range<usize>, Range<usize>)> {
         let width = COLUMNS / BLOCK;
-        let Self { shadows, products, marks, others, .. } = self;
-        let (first, tall) = (tile * width, shadows.numbers.len() / WIDTH);
+        let Self { projections, products, marks, others, .. } = self;
+        let (first, tall) = (tile * width, projections.numbers.len() / WIDTH);
         products.resize(tall * width, T::ZERO);
         let panels = &stage.panels[first * WIDTH..(first + width) * WIDTH];
-        kernels::products(products, &shadows.numbers, panels, WIDTH, stage.signed);
+        kernels::products(products, &projections.numbers, panels, WIDTH, stage.signed);
         let columns = known(stage, first..first + width, &others.blocks);
-        marks.resize(shadows.known.len(), 0);
-        kernels::mark_rows(marks, products, &shadows.known, columns);
+        marks.resize(projections.known.len(), 0);
+        kernels::mark_rows(marks, products, &projections.known, columns);
         let rows = marked(marks)?;
         marks.resize(width / LANES, 0);
         let within = &products[rows.start * width..rows.end * width];
-        kernels::mark_panels(marks, within, &shadows.known[rows.clone()], columns);
+        kernels::mark_panels(marks, within, &projections.known[rows.clone()], columns);
         let panels = marked(marks)?;
-        // Whole tiles of rows.
+        // Round down to whole tiles of rows.
         Some((rows.start / TALL * TALL..rows.end, first + panels.start * LANES..first + panels.end * LANES))
     }
 
-    /// Finds the blocks that are near enough.
+    /// Finds the pairs of blocks that survive the point bound.
     fn near_blocks(&mut self, stage: &Stage<T>, tile: usize, (rows, columns): &(Range<usize>, Range<usize>)) {
         let Self { blocks, products, marks, near, others, .. } = self;
         let (tall, width) = (rows.len().next_multiple_of(TALL), columns.len());
@@ -202,7 +204,7 @@ impl<T: Real> Strip<T> {
         }
     }
 
-    /// Of the blocks that are near enough, the points that are.
+    /// Evaluates the point bound for each pair of patches in the pairs of blocks found.
     fn near_points(&self, points: &Points<T>, first: usize, mut work: impl FnMut(usize, usize)) {
         let dims = points.dims;
         let own = &self.points;
@@ -226,7 +228,7 @@ impl<T: Real> Strip<T> {
         }
     }
 
-    /// The pairs of some rows and columns whose chords are near enough.
+    /// Evaluates the chord bound for all pairs of the given rows and columns.
     fn near_chords(
         &mut self,
         stage: &Stage<T>,
@@ -235,7 +237,7 @@ impl<T: Real> Strip<T> {
         columns: Range<usize>,
         work: &mut impl FnMut(usize, usize),
     ) {
-        let Self { chords, products, sums, spare, marks, others, .. } = self;
+        let Self { chords, products, sums, scratch, marks, others, .. } = self;
         let width = (columns.len() + stage.border).next_multiple_of(LANES);
         let tall = (rows.len() + stage.border).next_multiple_of(TALL);
         let numbers = &chords.numbers[rows.start * stage.dims..(rows.start + tall) * stage.dims];
@@ -243,7 +245,7 @@ impl<T: Real> Strip<T> {
         let panels = &stage.panels[columns.start * stage.dims..(columns.start + width) * stage.dims];
         kernels::products(products, numbers, panels, stage.dims, stage.signed);
         sums.resize((rows.len() - 1) * width + columns.len(), T::ZERO);
-        sums_along(products, spare, stage.border + 1, width + 1, sums);
+        sums_along(products, scratch, stage.border + 1, width + 1, sums);
         let known = known(stage, columns.clone(), &others.chords[columns.start - first..]);
         marks.resize(columns.len(), 0);
         for (row, sums) in rows.zip(sums.chunks(width)) {
@@ -259,20 +261,20 @@ fn farthest<T: Real>(limits: &[T]) -> T {
     limits.iter().fold(T::ZERO, |most, limit| most.max(*limit))
 }
 
-/// What is known of some candidates, whose limits are the first of those given.
+/// Bound data of a range of candidates; `limits` starts at the first of them.
 fn known<'a, T: Real>(stage: &'a Stage<T>, columns: Range<usize>, limits: &'a [T]) -> Columns<'a, T> {
     let limits = &limits[..columns.len()];
     Columns { halves: &stage.halves[columns.clone()], limits, radii: &stage.radii[columns] }
 }
 
-/// From the first mark to the last.
+/// The range from the first mark to the last.
 fn marked(marks: &[u8]) -> Option<Range<usize>> {
     let first = marks.iter().position(|mark| *mark != 0)?;
     let last = marks.iter().rposition(|mark| *mark != 0)?;
     Some(first..last + 1)
 }
 
-/// Runs `work(place)` for each mark, of which there are few; marks come in whole vectors.
+/// Runs `work(index)` for each mark. Marks are sparse, and their number is a multiple of [`LANES`].
 fn each_mark(marks: &[u8], mut work: impl FnMut(usize)) {
     for (group, near) in marks.as_chunks::<LANES>().0.iter().enumerate() {
         if u128::from_ne_bytes(*near) == 0 {

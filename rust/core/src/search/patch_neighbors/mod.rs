@@ -1,15 +1,15 @@
-//! Patch search: the most similar patches of every frame.
+//! Patch search: the nearest patches of every frame.
 //!
-//! The patch of a frame `t` is `t − r … t + r`; beyond the ends of a clip the end frame is held. With the rotation angles `θ`
-//! between the samples of two patches that are both there, and weights `w` of the joints,
+//! The patch of a frame `t` is `t − r … t + r`; past the ends of a clip the end frame is repeated. With `θ` the
+//! rotation angle between two samples, neither of which is missing, and weights `w` of the joints,
 //!
 //! ```text
 //! D(t, s)² = Σ w_j θ_j(t + o, s + o)² / Σ w_j      over offsets o and joints j
 //! ```
 //!
-//! Exact: every frame gets its `k` nearest candidates by that distance, of equally near ones those with lower numbers.
+//! The search is exact: every frame gets its `k` nearest candidates by that distance. Ties go to the lower index.
 //!
-//! - `poses`: clips as planes.
+//! - `poses`: clips as planes of unit quaternions.
 
 mod poses;
 
@@ -25,43 +25,43 @@ pub(crate) use poses::{Loaded, Poses};
 use std::ops::Range;
 use std::sync::Mutex;
 
-/// Frames of a task: their planes and their distances to a chunk of candidates stay within the second-level cache.
+/// Frames of a task: their planes and their distances to a chunk of candidates fit in the second-level cache.
 const TASK_FRAMES: usize = 256;
 
-/// Candidates whose planes are held at once: they stay within a common third-level cache.
+/// Candidates loaded at once: their planes fit in a typical third-level cache.
 const CHUNK_FRAMES: usize = 16_384;
 
-/// Fewer frames are not worth bounds, for which all candidates are read.
+/// Least number of frames for which bounds pay off: they require reading all candidates.
 const FEW_FRAMES: usize = 128;
 
-/// What a number that is not there stands for.
-const NOBODY: i64 = -1;
+/// Index of a missing neighbour.
+const NO_NEIGHBOR: i64 = -1;
 
 /// The parameters of the search.
 #[derive(Debug, Clone)]
 pub struct PatchNeighbors {
     /// Radius of a patch in frames.
     pub patch_radius: usize,
-    /// How many neighbours.
+    /// Number of neighbours per frame.
     pub count: usize,
-    /// In the clip itself, candidates at most so many frames away are left out.
+    /// Within the same clip, candidates at most this many frames away are left out.
     pub exclusion: usize,
-    /// What each joint counts, not negative.
+    /// Weight of each joint, not negative.
     pub weights: Vec<f64>,
 }
 
-/// What is done for the frames of a task.
+/// Work on the frames of one task.
 type Work<'a, T> = dyn Fn(&Join<'_, T>, &mut Scratch<T>) -> Result<(), Error> + Sync + 'a;
 
 impl PatchNeighbors {
-    /// Finds the nearest patches of every frame of `clip` among those of `library`, counted through its clips, or among its
-    /// own without one.
+    /// Finds the nearest patches of every frame of `clip`: in `library`, whose frames are counted through all its
+    /// clips, or in `clip` itself if there is no library.
     ///
-    /// `indices` and `distances` are `(frames, count)`, nearest first, in radians; −1 and infinity where there are no more.
-    /// Quaternions need not have length 1 exactly.
+    /// `indices` and `distances` are `(frames, count)`, nearest first, in radians. Missing entries are −1 and
+    /// infinity. Quaternions need not have length 1 exactly.
     ///
     /// # Errors
-    /// [`Error::Length`] if slices do not fit together; [`Error::Interrupted`].
+    /// [`Error::Length`] if the lengths of slices do not agree; [`Error::Interrupted`].
     pub fn search<T: Real>(
         &self,
         clip: ClipView<'_, T>,
@@ -77,7 +77,7 @@ impl PatchNeighbors {
         for other in library.unwrap_or_default() {
             check_length("joints of the library", joints, other.joints())?;
         }
-        indices.fill(NOBODY);
+        indices.fill(NO_NEIGHBOR);
         distances.fill(T::ONE / T::ZERO);
         if joints == 0 || frames == 0 {
             return Ok(());
@@ -100,7 +100,7 @@ impl PatchNeighbors {
             for frame in tile * TASK_FRAMES..frames.min((tile + 1) * TASK_FRAMES) {
                 let row = frame * self.count;
                 for (i, (distance, number)) in nearest.of(frame - tile * TASK_FRAMES).enumerate() {
-                    indices[row + i] = i64::try_from(number).unwrap_or(NOBODY);
+                    indices[row + i] = i64::try_from(number).unwrap_or(NO_NEIGHBOR);
                     distances[row + i] = distance;
                 }
             }
@@ -108,7 +108,7 @@ impl PatchNeighbors {
         Ok(())
     }
 
-    /// What was found for the frames of each task.
+    /// The nearest candidates for the frames of each task.
     fn nearest<T: Real>(
         &self,
         measure: &Measure<T>,
@@ -125,7 +125,7 @@ impl PatchNeighbors {
         let lists = Lists::new(0, frames, TASK_FRAMES, self.count.min(candidates), Ties::Lower);
         let bounded = poses.complete() && frames >= FEW_FRAMES;
         let mutual = bounded && !library && measure.window() <= LONGEST;
-        let spare: Mutex<Vec<(Loaded<T>, Scratch<T>)>> = Mutex::default();
+        let pool: Mutex<Vec<(Loaded<T>, Scratch<T>)>> = Mutex::default();
         let at = self.patch_radius;
         let mut first = 0;
         for scene in scenes {
@@ -139,7 +139,7 @@ impl PatchNeighbors {
                     let nanoseconds = tasks.len() * TASK_FRAMES * side.count * measure.joints.len();
                     parallel::for_each(tasks.collect(), nanoseconds, |_, task: usize| {
                         interrupt.check()?;
-                        let kept = spare.lock().map_or(None, |mut spare| spare.pop());
+                        let kept = pool.lock().map_or(None, |mut pool| pool.pop());
                         let (mut loaded, mut scratch) = kept.unwrap_or_default();
                         let from = task * TASK_FRAMES;
                         let to = frames.min(from + TASK_FRAMES);
@@ -159,8 +159,8 @@ impl PatchNeighbors {
                             mutual,
                         };
                         let done = work(&join, &mut scratch);
-                        if let Ok(mut spare) = spare.lock() {
-                            spare.push((loaded, scratch));
+                        if let Ok(mut pool) = pool.lock() {
+                            pool.push((loaded, scratch));
                         }
                         done
                     })
@@ -171,7 +171,7 @@ impl PatchNeighbors {
                         join.prepare(&lists, scratch);
                         Ok(())
                     })?;
-                    // Frames that come later look at these when they are candidates.
+                    // Later frames compare themselves with these as candidates.
                     0..own.end
                 } else {
                     0..frames.div_ceil(TASK_FRAMES)
@@ -188,7 +188,7 @@ impl PatchNeighbors {
 mod tests {
     use super::*;
 
-    /// Swings that repeat more or less, with a jerk in one place.
+    /// Oscillations that repeat approximately, with a jerk in one place.
     fn clip<T: Real>(frames: usize, joints: usize, speed: f64) -> Vec<T> {
         (0..frames * joints)
             .flat_map(|i| {
@@ -250,7 +250,8 @@ mod tests {
         Ok(())
     }
 
-    /// Some frames of a clip, whose pairs are looked at once, beside all of their pairs.
+    /// Compares the results of the mutual search, which visits each pair once, with those of all pairs for some
+    /// frames.
     fn looking_once_changes_nothing<T: Real>(
         (frames, joints): (usize, usize),
         some: &[Range<usize>],
@@ -284,7 +285,7 @@ mod tests {
                     let row = count * frame..count * (frame + 1);
                     let found = distances[row.clone()].iter().copied().zip(indices[row].iter().copied());
                     let expected =
-                        nearest.of(frame - first).map(|(d, n)| (d, i64::try_from(n).unwrap_or(NOBODY)));
+                        nearest.of(frame - first).map(|(d, n)| (d, i64::try_from(n).unwrap_or(NO_NEIGHBOR)));
                     assert!(expected.eq(found), "frame {frame} of {frames}");
                 }
             }
@@ -310,7 +311,7 @@ mod tests {
     fn a_pair_that_is_looked_at_once_counts_for_both() -> Result<(), Error> {
         looking_once_changes_nothing::<f32>((2305, 9), &[0..100, 100..2305])?;
         looking_once_changes_nothing::<f64>((300, 2), &[0..100, 100..300])?;
-        // Of two chunks.
+        // Two chunks of candidates.
         let frames = CHUNK_FRAMES + 700;
         let some = [0..60, CHUNK_FRAMES - 30..CHUNK_FRAMES + 30, frames - 60..frames];
         looking_once_changes_nothing::<f32>((frames, 1), &some)

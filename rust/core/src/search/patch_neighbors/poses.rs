@@ -9,26 +9,26 @@ use crate::search::kernels::LANES;
 use crate::{ClipView, Error, Real};
 use std::ops::Range;
 
-/// Cosine of the half angle between a joint's mean and its samples within which no two of them are more than half a turn
-/// apart: 45°, less what roundings could add.
+/// Cosine of 45°, plus a margin for rounding. If all samples of a joint are within this half angle of its mean, no
+/// two of them are more than 180° apart.
 const NARROW: f64 = std::f64::consts::FRAC_1_SQRT_2 + 1e-5;
 
-/// Frames whose mean serves as the centre of all: what is found does not depend on it.
+/// Number of frames whose mean serves as the centre. The result of the search does not depend on it.
 const SAMPLE: usize = 1024;
 
 /// Planes of a joint.
 const PER_JOINT: usize = 4;
 
-/// How the joints of some clips are signed and compared.
+/// Sign convention and distance of each joint of a set of clips.
 #[derive(Debug)]
 pub(crate) struct Poses<T> {
-    /// A rotation in the middle of each joint's samples: their signs are those nearer to it.
+    /// A rotation in the middle of each joint's samples: samples take the sign nearer to it.
     centres: Vec<[T; 4]>,
     joints: Vec<Joint>,
     complete: bool,
 }
 
-/// Some frames of a clip as planes.
+/// Consecutive frames of a clip as planes.
 #[derive(Debug, Default)]
 pub(crate) struct Loaded<T> {
     planes: Planes<T>,
@@ -43,8 +43,8 @@ impl<T: Real> Loaded<T> {
 }
 
 impl<T: Real> Poses<T> {
-    /// Looks through a clip, near whose means the centres are, and through others; `shared` asks for shares of samples even if
-    /// none is missing.
+    /// Scans `clip`, whose means become the centres, and `others`. `shared` requests weights of samples even if none
+    /// is missing.
     pub(crate) fn new(
         clip: ClipView<'_, T>,
         others: &[ClipView<'_, T>],
@@ -84,12 +84,12 @@ impl<T: Real> Poses<T> {
         Ok(Self { centres, joints, complete })
     }
 
-    /// Whether no sample is missing and no shares were asked for.
+    /// Whether no sample is missing and no weights were requested.
     pub(crate) fn complete(&self) -> bool {
         self.complete
     }
 
-    /// Loads some frames of a clip and `pad` more at both ends; beyond the ends of the clip its end frames are held.
+    /// Loads frames of a clip with `pad` more at both ends; past the ends of the clip its end frames are repeated.
     pub(crate) fn load(&self, clip: ClipView<'_, T>, frames: Range<usize>, pad: usize, to: &mut Loaded<T>) {
         let joints = self.joints.len();
         let length = frames.len() + 2 * pad + LANES;

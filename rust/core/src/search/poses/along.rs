@@ -1,8 +1,9 @@
-//! Exact search from frame to frame: a motion cannot come near to what was far a moment ago.
+//! Exact search from frame to frame with bounds carried over by the triangle inequality.
 //!
-//! Of each passage of the index a number is kept: no segment of it was nearer than that when it was last looked at. Since then
-//! the query has travelled some way, and by the triangle inequality the segments are at most so much nearer. Only where what
-//! remains is within reach of the nearest, the passage is looked at again. Nothing is lost.
+//! For each block of the index a lower bound is kept: the distance of its nearest segment when the block was last
+//! measured. Since then the query has moved by a known path length, so by the triangle inequality the segments are
+//! nearer by at most that length. A block is measured again only if the remaining bound is below the current limit.
+//! The result is exact.
 
 use super::index::Query;
 use super::kernels::TILE;
@@ -11,19 +12,19 @@ use crate::error::check_length;
 use crate::{Error, Real};
 use std::ops::Range;
 
-/// How far a query travels before all is looked at again, in lengths of the longest segment: bounds are sums with the way so far,
-/// and round the more the longer it is.
-const JOURNEY: f64 = 64.0;
+/// Path length of the query, in lengths of the longest segment, after which all blocks are measured again. Bounds are
+/// sums with the path length, and their rounding errors grow with it.
+const LONGEST_PATH: f64 = 64.0;
 
 /// An exact search along a motion.
 #[derive(Debug)]
 pub struct Along<T> {
     best: Best<T>,
-    /// The query before; empty where all is to be looked at.
+    /// The previous query; empty if all blocks have to be measured.
     before: Vec<T>,
-    /// How far queries have travelled since all was looked at: never less than it is.
+    /// Path length of the queries since all blocks were measured, rounded up.
     travelled: f64,
-    /// The way so far when a passage was looked at last, and how near its segments were at least then, added.
+    /// For each block: the path length when it was last measured plus the lower bound of its distances then.
     bounds: Vec<T>,
     squares: Vec<T>,
 }
@@ -41,17 +42,17 @@ impl<T: Real> Along<T> {
         }
     }
 
-    /// Forgets the frames before.
+    /// Discards the state of the previous frames.
     pub fn reset(&mut self) {
         self.before.clear();
         self.best.clear();
     }
 
-    /// Finds the segments that are nearest to `query`, `(length, dims)` in C order, but for those that are `excluded`. The
-    /// segments and their index must be those of the frames before.
+    /// Finds the segments nearest to `query`, `(length, dims)` in C order, except for the `excluded` ones. The
+    /// segments and their index must be the same for all frames.
     ///
     /// # Errors
-    /// [`Error::Length`] if the query is of another length than the segments.
+    /// [`Error::Length`] if the length of the query is not that of the segments.
     pub fn next(
         &mut self,
         segments: &Segments<'_, T>,
@@ -67,11 +68,11 @@ impl<T: Real> Along<T> {
         }
         let known = self.before.len() == query.len() && self.bounds.len() == index.blocks.len();
         if known {
-            // Upwards, so that the way from any frame to any other is never taken for less than it is.
+            // Rounded up: the path length between any two frames must never be underestimated.
             let step = index.distance(&made, &self.before).to_f64();
             self.travelled = (self.travelled + step) * (1.0 + 2.0 * f64::EPSILON);
         }
-        if known && self.travelled <= JOURNEY * index.largest().to_f64() {
+        if known && self.travelled <= LONGEST_PATH * index.largest().to_f64() {
             self.offer_those_before(segments, &made, excluded);
             self.look(segments, index, &made);
         } else {
@@ -88,7 +89,7 @@ impl<T: Real> Along<T> {
         Ok(&self.best)
     }
 
-    /// Offers the nearest of the frame before and those after them, to know early how near the nearest are.
+    /// Offers the neighbours of the previous frame and their successors, so that the limit is small from the start.
     fn offer_those_before(&mut self, segments: &Segments<'_, T>, query: &Query<T>, excluded: &Range<usize>) {
         let mut ends: Vec<usize> = self.best.found().iter().flat_map(|&(_, end)| [end, end + 1]).collect();
         ends.sort_unstable();
@@ -101,15 +102,15 @@ impl<T: Real> Along<T> {
         }
     }
 
-    /// Looks at the passages that may hold one of the nearest.
+    /// Measures the blocks that may hold one of the nearest segments.
     fn look(&mut self, segments: &Segments<'_, T>, index: &Index<T>, query: &Query<T>) {
         let Self { best, travelled, bounds, .. } = self;
         let reach = |best: &Best<T>| {
             T::from_f64((index.near(best).to_f64() + *travelled) * (1.0 + 4.0 * T::EPSILON.to_f64()))
         };
         let mut within = reach(best);
-        // Not `<=`: where nothing is known the bound is no number.
-        #[allow(clippy::neg_cmp_op_on_partial_ord, reason = "a bound that is no number is within reach")]
+        // Not `<=`: an unknown bound is NaN and counts as reached.
+        #[allow(clippy::neg_cmp_op_on_partial_ord, reason = "a bound that is NaN counts as reached")]
         let reached = |bound: T, within: T| !(bound > within);
         let mut squares = [T::ZERO; TILE];
         for (tile, bounds) in bounds.chunks_mut(TILE).enumerate() {
@@ -117,10 +118,10 @@ impl<T: Real> Along<T> {
                 continue;
             }
             index.tile(query, tile, &mut squares);
-            for (place, (bound, square)) in bounds.iter_mut().zip(squares).enumerate() {
-                let block = tile * TILE + place;
+            for (column, (bound, square)) in bounds.iter_mut().zip(squares).enumerate() {
+                let block = tile * TILE + column;
                 let below = T::from_f64(index.below(query, block, square).to_f64() + *travelled);
-                // Of two bounds the higher says more.
+                // The higher of two lower bounds is the stronger one.
                 *bound = if *bound > below { *bound } else { below };
                 if reached(*bound, within) {
                     let below = index.measure(segments, query, block, best);

@@ -1,8 +1,8 @@
-//! The nearest segments so far.
+//! The nearest segments found so far.
 
 use crate::Real;
 
-/// The `count` nearest of what was offered, nearest first; of two that are as near, the one of the lower number.
+/// The `count` nearest of the segments offered, nearest first. Ties go to the lower index.
 #[derive(Debug, Clone)]
 pub struct Best<T> {
     count: usize,
@@ -10,37 +10,37 @@ pub struct Best<T> {
 }
 
 impl<T: Real> Best<T> {
-    /// Nothing yet.
+    /// An empty list.
     #[must_use]
     pub fn new(count: usize) -> Self {
         Self { count, found: Vec::new() }
     }
 
-    /// How many are kept.
+    /// Largest number of segments kept.
     #[must_use]
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Forgets all.
+    /// Empties the list.
     pub fn clear(&mut self) {
         self.found.clear();
     }
 
-    /// Squared distances and numbers, nearest first.
+    /// Squared distances and indices, nearest first.
     #[must_use]
     pub fn found(&self) -> &[(T, usize)] {
         &self.found
     }
 
-    /// The squared distance beyond which nothing counts; `None`: everything does.
+    /// Squared distance of the last segment kept; `None` until there are `count`.
     #[inline(always)]
     #[must_use]
     pub fn limit(&self) -> Option<T> {
         if self.found.len() < self.count { None } else { self.found.last().map(|last| last.0) }
     }
 
-    /// Takes note of a segment, unless it is farther than those that are known or its distance is not finite.
+    /// Inserts a segment if it is among the nearest and its distance is finite.
     #[inline(always)]
     pub fn offer(&mut self, square: T, number: usize) {
         if self.limit().is_none_or(|limit| square <= limit) {
@@ -67,12 +67,12 @@ impl<T: Real> Best<T> {
         self.found.insert(at, (square, number));
     }
 
-    /// Writes numbers and distances; −1 and infinity where there are fewer.
+    /// Writes indices and distances; −1 and infinity for missing entries.
     pub fn write<I: Copy + From<i32> + TryFrom<usize>>(&self, indices: &mut [I], distances: &mut [T]) {
         indices.fill(I::from(-1));
         distances.fill(T::ONE / T::ZERO);
         for ((index, distance), &(square, number)) in indices.iter_mut().zip(distances).zip(&self.found) {
-            // A number that does not fit cannot come from a matrix of so many poses.
+            // The conversion cannot fail: a matrix of poses has no index that large.
             *index = I::try_from(number).unwrap_or(I::from(-1));
             *distance = square.sqrt();
         }

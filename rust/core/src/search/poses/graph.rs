@@ -1,8 +1,8 @@
 //! The graph of neighbours: the nearest segments of every segment of a database.
 //!
-//! J. Chai and J. K. Hodgins, "Performance animation from low-dimensional control signals", 2005. Every segment is searched for
-//! in the index: the graph is exact. Neighbours lie apart in time, so that they lead to as many passages; a search along the graph comes to
-//! those beside them by itself.
+//! J. Chai and J. K. Hodgins, "Performance animation from low-dimensional control signals", 2005. Every segment is a
+//! query to the index, so the graph is exact. Neighbours of the same clip keep a minimum distance in time: they lead
+//! to different parts of the motion, and a search along the graph visits the segments beside them anyway.
 
 use super::nearest::TOGETHER;
 use super::{Best, Index, Segments};
@@ -11,10 +11,10 @@ use crate::parallel::{self, Interrupt};
 use crate::{Error, Real};
 use std::ops::Range;
 
-/// What stands for a neighbour that does not exist.
-const NOBODY: i32 = -1;
+/// Index of a missing neighbour.
+const NO_NEIGHBOR: i32 = -1;
 
-/// A graph: the numbers of the neighbours of every pose, nearest first.
+/// The graph: the indices of the neighbours of every pose, nearest first.
 #[derive(Debug, Clone, Copy)]
 pub struct Graph<'a> {
     neighbors: &'a [i32],
@@ -22,10 +22,10 @@ pub struct Graph<'a> {
 }
 
 impl<'a> Graph<'a> {
-    /// Views `neighbors`, `(poses, degree)` in C order; negative numbers stand for nobody.
+    /// Views `neighbors`, `(poses, degree)` in C order; negative indices are missing neighbours.
     ///
     /// # Errors
-    /// [`Error::Length`] if they are of another number of poses.
+    /// [`Error::Length`] if the length is not `poses · degree`.
     pub fn new(neighbors: &'a [i32], poses: usize, degree: usize) -> Result<Self, Error> {
         check_length("graph", poses * degree, neighbors.len())?;
         Ok(Self { neighbors, degree })
@@ -39,30 +39,31 @@ impl<'a> Graph<'a> {
     }
 }
 
-/// Where the results of [`neighbors`] go: `degree` for each pose.
+/// Output of [`neighbors`]: `degree` entries for each pose.
 #[derive(Debug)]
 pub struct Neighbors<'a, T> {
-    /// How many are sought for each pose.
+    /// Number of neighbours per pose.
     pub degree: usize,
-    /// Their numbers, nearest first; −1 where there are fewer, and all −1 for a pose at which no candidate ends.
+    /// Indices, nearest first; −1 for missing entries, and for all entries of a pose that ends no candidate.
     pub indices: &'a mut [i32],
-    /// Their distances; infinite where there are fewer.
+    /// Distances; infinite for missing entries.
     pub distances: &'a mut [T],
 }
 
-/// Which segments are neighbours.
+/// Minimum distances in time.
 #[derive(Debug, Clone, Copy)]
 pub struct Apart {
-    /// Those of its own clip at most so many poses away are none.
+    /// Segments of the same clip at most this many poses away are not neighbours.
     pub exclusion: usize,
-    /// Of those less than so many poses apart in a clip only the nearest is one.
+    /// Minimum distance, in poses, between two neighbours of the same clip; the nearer one is kept.
     pub spacing: usize,
 }
 
-/// Finds the candidates that are nearest to each candidate, of those that are far enough `apart`.
+/// Finds the nearest candidates of each candidate that satisfy the minimum distances `apart`.
 ///
 /// # Errors
-/// [`Error::Length`] if slices do not fit together; [`Error::Parameter`] for more than 2³¹ poses; [`Error::Interrupted`].
+/// [`Error::Length`] if the lengths of slices do not agree; [`Error::Parameter`] for more than 2³¹ poses;
+/// [`Error::Interrupted`].
 pub fn neighbors<T: Real>(
     segments: &Segments<'_, T>,
     index: &Index<T>,
@@ -76,7 +77,7 @@ pub fn neighbors<T: Real>(
     if i32::try_from(segments.poses()).is_err() {
         return Err(Error::Parameter { name: "features", expected: "at most 2³¹ poses" });
     }
-    indices.fill(NOBODY);
+    indices.fill(NO_NEIGHBOR);
     distances.fill(T::ONE / T::ZERO);
     if degree == 0 {
         return Ok(());
@@ -84,7 +85,7 @@ pub fn neighbors<T: Real>(
     let mut tasks = Vec::with_capacity(index.blocks.len());
     let (mut indices, mut distances, mut done) = (indices, distances, 0);
     for block in &index.blocks {
-        // All poses up to the end of the passage: those of no passage stay as they are.
+        // All poses up to the end of the block. Poses outside all blocks keep their missing entries.
         let last = block.ends().end;
         let (index_rows, indices_left) = indices.split_at_mut((last - done) * degree);
         let (distance_rows, distances_left) = distances.split_at_mut((last - done) * degree);
@@ -124,14 +125,14 @@ pub fn neighbors<T: Real>(
     })
 }
 
-/// How many of the nearest are looked for: usually enough that `degree` of them lie apart, and then as many as it takes at most, for
-/// each that is taken keeps at most so many from being taken.
+/// Numbers of candidates to search for. The first usually suffices for `degree` neighbours with the minimum distance.
+/// The second always does: each chosen neighbour rules out at most `2·spacing − 2` others.
 fn sought(degree: usize, spacing: usize) -> [usize; 2] {
     let spacing = spacing.max(1);
     [degree.saturating_mul(spacing), degree.saturating_mul(2 * spacing - 1)]
 }
 
-/// The nearest, of those less than `spacing` poses apart in a clip only the nearest.
+/// Keeps the nearest of all segments less than `spacing` poses apart in one clip.
 fn thinned<T: Real>(best: &Best<T>, clips: &[Range<usize>], spacing: usize, degree: usize) -> Best<T> {
     let mut chosen: Best<T> = Best::new(degree);
     for &(square, end) in best.found() {

@@ -1,38 +1,38 @@
 //! Squared distances of segments.
 //!
-//! Squares are added in lanes, and the lanes in a tree, in one order at every level. All terms are positive, so that a sum of
-//! `n` terms is exact to `n / 16 + 7` roundings, relative to itself.
+//! Squares are summed in lanes, and the lanes in a tree, in the same order at every SIMD level. All terms are
+//! positive, so a sum of `n` terms has a relative error of at most `n / 16 + 7` roundings.
 
 use super::Segments;
 use crate::Real;
 use crate::simd::multiversion;
 
-/// Sums that grow side by side.
+/// Number of running sums.
 pub(super) const LANES: usize = 16;
 
-/// Poses whose products grow side by side.
+/// Poses whose products are accumulated side by side.
 const POSES: usize = 4;
 
-/// Passages whose middles lie side by side.
+/// Blocks whose middles are stored side by side.
 pub(super) const TILE: usize = 64;
 
-/// A segment to which others are compared.
+/// A segment that others are compared with.
 #[derive(Debug, Clone)]
 pub struct Probe<T> {
     values: Vec<T>,
-    /// The whole groups of its numbers; then its last [`LANES`] numbers, or all of them and zeros; then 1 for those of the last ones
-    /// that lie beyond the last whole group, else 0.
+    /// The whole groups of its values; then its last [`LANES`] values, or all of them padded with zeros; then a mask
+    /// for these: 1 for values past the last whole group, 0 for the others.
     groups: Vec<Group<T>>,
 }
 
-/// Numbers that are read at once: across two cache lines it would take twice as long. Only for the heap: an object of Python that
-/// holds one would not lie as it must.
+/// Values that are loaded at once. Aligned, because a load across two cache lines takes twice as long. For the heap
+/// only: memory of Python objects does not have this alignment.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 struct Group<T>([T; LANES]);
 
 impl<T: Real> Probe<T> {
-    /// A copy of a segment.
+    /// Copies a segment.
     #[must_use]
     pub fn new(values: &[T]) -> Self {
         let mut probe = Self { values: Vec::new(), groups: Vec::new() };
@@ -40,7 +40,7 @@ impl<T: Real> Probe<T> {
         probe
     }
 
-    /// Takes on another segment.
+    /// Replaces the segment.
     pub fn set(&mut self, values: &[T]) {
         self.values.clear();
         self.values.extend_from_slice(values);
@@ -52,7 +52,7 @@ impl<T: Real> Probe<T> {
         self.groups.extend([Group(last), Group(rest)]);
     }
 
-    /// Whether all its numbers are finite.
+    /// Whether all values are finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.values.iter().all(|value| value.is_finite())
@@ -69,7 +69,7 @@ fn fold<T: Real, const N: usize, const H: usize>(lanes: [T; N]) -> [T; H] {
     half
 }
 
-/// Adds the squares of differences to the lanes, but for those that are so small that their squares have lost digits.
+/// Adds squared differences to the lanes. Differences so small that their squares lose digits are left out.
 #[inline(always)]
 fn step<T: Real>(
     sums: [T; LANES],
@@ -86,7 +86,7 @@ fn step<T: Real>(
     grown
 }
 
-/// The lanes of the squared distance of a segment to a probe that has as many numbers.
+/// The lanes of the squared distance between a segment and a probe of the same length.
 #[inline(always)]
 fn lanes<T: Real>(segment: &[T], probe: &Probe<T>) -> [T; LANES] {
     let groups = segment.as_chunks::<LANES>().0;
@@ -115,7 +115,7 @@ fn total<T: Real>(sums: [T; LANES]) -> T {
     sums[0] + sums[1]
 }
 
-/// A few numbers and zeros.
+/// Pads fewer than [`LANES`] values with zeros.
 #[inline(always)]
 fn padded<T: Real>(numbers: &[T]) -> [T; LANES] {
     let mut padded = [T::ZERO; LANES];
@@ -128,7 +128,7 @@ fn padded<T: Real>(numbers: &[T]) -> [T; LANES] {
 }
 
 multiversion! {
-    /// Squared distances to segments of which each begins `dims` numbers after the one before.
+    /// Squared distances to segments that start `dims` values apart.
     fn squares_along<T: Real>(rows: &[T], dims: usize, probe: &Probe<T>, out: &mut [T]) {
         let width = probe.values.len();
         for i in 0..out.len() {
@@ -149,7 +149,7 @@ multiversion! {
     }
 }
 
-/// Squared distances to segments of which each begins `dims` numbers after the one before.
+/// Squared distances to segments that start `dims` values apart.
 pub(super) fn in_sequence<T: Real>(rows: &[T], dims: usize, probe: &Probe<T>, out: &mut [T]) {
     squares_along(rows, dims, probe, out);
 }
@@ -165,11 +165,11 @@ pub(super) fn scattered<T: Real>(
 }
 
 multiversion! {
-    /// Squared distances of [`TILE`] vectors, the first numbers of which come first, to one.
+    /// Squared distances between [`TILE`] vectors, stored coordinate by coordinate, and one vector.
     pub(super) fn tile<T: Real>(numbers: &[T], vector: &[T], out: &mut [T]) {
         let out = &mut out[..TILE];
         out.fill(T::ZERO);
-        // Four at once: loads and stores of the sums would take longer than they do.
+        // Four coordinates per pass: loads and stores of the sums would take longer than the arithmetic.
         for j in 0..vector.len() / 4 {
             let at = 4 * j * TILE;
             let [a, b, c, d] = [0, 1, 2, 3].map(|k| &numbers[at + k * TILE..at + (k + 1) * TILE]);
@@ -183,13 +183,13 @@ multiversion! {
 }
 
 multiversion! {
-    /// Products of poses with the [`LANES`] vectors of a basis, the first numbers of which come first.
+    /// Products of poses with the [`LANES`] vectors of a basis, stored coordinate by coordinate.
     pub(super) fn products<T: Real>(basis: &[T], poses: &[T], out: &mut [T]) {
         let dims = basis.len() / LANES;
         let basis = basis.as_chunks::<LANES>().0;
-        let (shadows, rest) = out.as_chunks_mut::<LANES>();
+        let (projections, rest) = out.as_chunks_mut::<LANES>();
         debug_assert!(rest.is_empty());
-        let whole = shadows.len() / POSES * POSES;
+        let whole = projections.len() / POSES * POSES;
         let mut i = 0;
         while i < whole {
             let mut sums = [[T::ZERO; LANES]; POSES];
@@ -199,21 +199,21 @@ multiversion! {
                     sums[row] = grow(sums[row], &basis[j], rows[row][j]);
                 }
             }
-            shadows[i..i + POSES].copy_from_slice(&sums);
+            projections[i..i + POSES].copy_from_slice(&sums);
             i += POSES;
         }
-        while i < shadows.len() {
+        while i < projections.len() {
             let mut sums = [T::ZERO; LANES];
             for j in 0..dims {
                 sums = grow(sums, &basis[j], poses[i * dims + j]);
             }
-            shadows[i] = sums;
+            projections[i] = sums;
             i += 1;
         }
     }
 }
 
-/// Adds the product of a vector and a number.
+/// Adds the product of a vector and a scalar.
 #[inline(always)]
 fn grow<T: Real>(sums: [T; LANES], vector: &[T; LANES], number: T) -> [T; LANES] {
     let mut grown = [T::ZERO; LANES];

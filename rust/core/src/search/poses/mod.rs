@@ -1,16 +1,16 @@
-//! Pose search: segments of poses in a database that are nearest to others.
+//! Pose search: the segments of poses in a database that are nearest to a query.
 //!
-//! A pose is a row of `dims` numbers whose Euclidean distance is that of the poses. A segment is `length` poses in sequence
-//! within one clip, known by the number of its last pose; since the rows lie in sequence, a segment is a vector too, and its
-//! squared distance to another is the sum over its poses.
+//! A pose is a row of `dims` values; the distance of two poses is the Euclidean distance of their rows. A segment is
+//! `length` consecutive poses of one clip and is identified by the index of its last pose. Rows are contiguous, so a
+//! segment is a vector too, and the squared distance of two segments is the sum over their poses.
 //!
-//! - [`Segments`]: which segments of a matrix are candidates;
-//! - [`Index`]: what tells early that a segment is not among the nearest;
+//! - [`Segments`]: the candidate segments of a matrix;
+//! - [`Index`]: lower bounds of segment distances for exact search;
 //! - [`nearest`]: exact search;
 //! - [`graph`]: the nearest segments of every segment of the database;
-//! - [`walk`]: search from frame to frame, along the graph;
+//! - [`walk`]: approximate search from frame to frame, along the graph;
 //! - [`along`]: exact search from frame to frame;
-//! - `best`: the nearest so far; `kernels`: distances.
+//! - `best`: the nearest segments found so far; `kernels`: distances.
 
 pub mod along;
 mod best;

@@ -8,41 +8,42 @@ use crate::{Error, Real};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Poses of all queries from which it pays to make an index first: to make it takes about as long as to measure nine queries of a
-/// pose, or four of three, and with it a query takes a tenth of the time.
+/// Poses of all queries from which building an index pays off. Building takes about as long as measuring nine queries
+/// of one pose, or four of three poses; with the index a query takes a tenth of the time.
 const QUERIED: usize = 10;
 
-/// Pairs of a candidate and a pose of a query from which it does: learning the directions takes a millisecond in any case.
+/// Pairs of a candidate and a query pose from which an index pays off: computing the directions takes a millisecond
+/// in any case.
 const PAIRS: usize = 400_000;
 
-/// Segments of a task where everything is measured: a few megabytes.
+/// Segments of a task in the search without an index: a few megabytes.
 const TASK: usize = 8192;
 
 /// Segments that are measured before they are compared.
 const STRIP: usize = 64;
 
-/// Queries of a task: all of them see a part of the index while it is in the cache.
+/// Queries of a task: they share each part of the index while it is in the cache.
 pub(super) const TOGETHER: usize = 4;
 
-/// Where the results of [`nearest`] go: `count` for each query.
+/// Output of [`nearest`]: `count` entries for each query.
 #[derive(Debug)]
 pub struct Nearest<'a, T> {
-    /// How many are sought for each query.
+    /// Number of neighbours per query.
     pub count: usize,
-    /// Numbers of the last poses, nearest first; −1 where there are fewer.
+    /// Indices of the last poses, nearest first; −1 for missing entries.
     pub indices: &'a mut [i64],
-    /// Distances; infinite where there are fewer.
+    /// Distances; infinite for missing entries.
     pub distances: &'a mut [T],
 }
 
-/// Finds the candidates that are nearest to each of `queries`, `(queries, length, dims)` in C order.
+/// Finds the candidates nearest to each of `queries`, `(queries, length, dims)` in C order.
 ///
-/// `excluded` are the candidates that do not count, for each query. With `index`, which must be that of `segments`, most
-/// candidates are passed over; the results are the same. A candidate or a query with a number that is not finite is near to
-/// nothing.
+/// `excluded` are the candidates left out for each query. `index`, if given, must be that of `segments`; it skips
+/// most candidates and does not change the result. Candidates and queries with values that are not finite have no
+/// neighbours.
 ///
 /// # Errors
-/// [`Error::Length`] if slices do not fit together; those of [`Index::new`].
+/// [`Error::Length`] if the lengths of slices do not agree; those of [`Index::new`].
 pub fn nearest<T: Real>(
     segments: &Segments<'_, T>,
     index: Option<&Index<T>>,
@@ -103,7 +104,7 @@ fn everywhere<T: Real>(
                 for ((probe, excluded, limit), best) in sought.iter().zip(&mut bests) {
                     kernels::in_sequence(segments.rows(&strip), segments.dims(), probe, squares);
                     let within = limit.get();
-                    // Most strips hold nothing, and that is told without a branch for each segment.
+                    // Most strips hold no near segment, and one branch for the whole strip shows it.
                     if squares.iter().fold(false, |any, &square| any | (square <= within)) {
                         offer(best, &strip, squares, excluded, within);
                         limit.lower(best);
@@ -124,7 +125,7 @@ fn everywhere<T: Real>(
     Ok(results)
 }
 
-/// Looks at the index, and measures the candidates that matter.
+/// Searches the index, and measures the candidates that survive its bounds.
 fn indexed<T: Real>(
     segments: &Segments<'_, T>,
     index: &Index<T>,
@@ -150,7 +151,7 @@ fn indexed<T: Real>(
     Ok(results.into_iter().flatten().collect())
 }
 
-/// Cuts clips into tasks of [`TASK`] candidates.
+/// Splits clips into tasks of [`TASK`] candidates.
 fn tasks(clips: &[Range<usize>]) -> Vec<Vec<Range<usize>>> {
     let mut tasks: Vec<Vec<Range<usize>>> = Vec::new();
     let mut room = 0;
@@ -172,7 +173,7 @@ fn tasks(clips: &[Range<usize>]) -> Vec<Vec<Range<usize>>> {
     tasks
 }
 
-/// Offers candidates in sequence, but for those that are excluded or beyond a limit.
+/// Offers consecutive candidates within a limit, except for the excluded ones.
 fn offer<T: Real>(
     best: &mut Best<T>,
     ends: &Range<usize>,
@@ -187,22 +188,22 @@ fn offer<T: Real>(
     }
 }
 
-/// The least squared distance beyond which a task found that nothing counts, for all tasks: where one has found as many as are
-/// sought, others need not look for farther ones. What counts in the end does not depend on who is first.
+/// The smallest limit, as a squared distance, of all tasks: once one task has enough segments, others can skip
+/// farther ones. The final result does not depend on the order of the tasks.
 struct Limit(AtomicU64);
 
 impl Limit {
-    /// Everything counts.
+    /// No limit yet.
     fn new() -> Self {
         Self(AtomicU64::new(f64::INFINITY.to_bits()))
     }
 
-    /// The squared distance beyond which nothing counts.
+    /// The squared distance beyond which segments are skipped.
     fn get<T: Real>(&self) -> T {
         T::from_f64(f64::from_bits(self.0.load(Ordering::Relaxed)))
     }
 
-    /// Takes note of what a task has found. The bits of numbers that are not negative lie in the order of the numbers.
+    /// Lowers the limit to that of a task. The bits of non-negative floats are ordered as the floats.
     fn lower<T: Real>(&self, best: &Best<T>) {
         if let Some(limit) = best.limit() {
             self.0.fetch_min(limit.to_f64().to_bits(), Ordering::Relaxed);

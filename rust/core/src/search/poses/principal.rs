@@ -1,15 +1,15 @@
-//! The directions in which poses differ most.
+//! Directions of largest variance of the poses.
 
 use super::Segments;
 use crate::Real;
 
-/// Poses from which the directions are learnt.
+/// Number of poses from which the directions are computed.
 const SAMPLE: usize = 512;
 
-/// Rounds of orthogonal iteration: the directions need not be exact, only at right angles.
+/// Rounds of orthogonal iteration: the directions must be orthonormal, but need not be exact.
 const ROUNDS: usize = 6;
 
-/// Up to `width` directions at right angles, `(width, dims)`, along which most of the variance of the poses lies; zeros where
+/// Up to `width` orthonormal directions, `(width, dims)`, that hold most of the variance of the poses; zeros where
 /// there are fewer.
 pub(crate) fn directions<T: Real>(segments: &Segments<'_, T>, width: usize) -> Vec<f64> {
     let dims = segments.dims();
@@ -68,13 +68,13 @@ fn covariance<T: Real>(segments: &Segments<'_, T>) -> Vec<f64> {
     covariance
 }
 
-/// Puts vectors at right angles and gives them length 1; those that depend on others become 0.
+/// Gram–Schmidt: makes vectors orthonormal; linearly dependent ones become 0.
 fn orthonormalise(vectors: &mut [f64], dims: usize) {
     for i in 0..vectors.len() / dims {
         let (done, rest) = vectors.split_at_mut(i * dims);
         let vector = &mut rest[..dims];
         let length = norm(vector);
-        // Twice is enough: what rounding left of the others is taken away.
+        // Two passes: the second removes the rounding errors of the first.
         for _ in 0..2 {
             for other in done.chunks_exact(dims) {
                 let along: f64 = vector.iter().zip(other).map(|(x, y)| x * y).sum();

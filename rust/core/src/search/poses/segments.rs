@@ -1,17 +1,17 @@
-//! Segments of poses in a matrix of clips that lie one after the other.
+//! Segments of poses in a matrix of concatenated clips.
 
 use crate::error::check_length;
 use crate::{Error, Real};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Which segments of a matrix are candidates: a bit for each pose.
+/// The candidate segments of a matrix: one bit per pose.
 #[derive(Debug)]
 pub struct Layout {
     dims: usize,
     length: usize,
     clips: Vec<Range<usize>>,
-    /// Whether a candidate ends at a pose.
+    /// Whether a candidate ends at this pose.
     members: Vec<u64>,
 }
 
@@ -23,12 +23,12 @@ pub struct Segments<'a, T> {
 }
 
 impl<'a, T: Real> Segments<'a, T> {
-    /// Views `features`, in C order. `starts` are the first poses of the clips, and the number of poses; `successors`, how many
-    /// poses of the clip must follow a candidate.
+    /// Views `features`, in C order. `starts` are the first poses of the clips, followed by the number of poses.
+    /// `successors` is the number of poses of the clip that must follow a candidate.
     ///
     /// # Errors
-    /// [`Error::Parameter`] if `starts` do not rise from 0, or `dims` or `length` is 0; [`Error::Length`] if they end elsewhere
-    /// than the poses.
+    /// [`Error::Parameter`] if `starts` do not rise from 0, or `dims` or `length` is 0; [`Error::Length`] if the last
+    /// of `starts` is not the number of poses.
     pub fn new(
         features: &'a [T],
         dims: usize,
@@ -57,10 +57,10 @@ impl<'a, T: Real> Segments<'a, T> {
         Ok(Self { features, layout: Arc::new(Layout { dims, length, clips, members }) })
     }
 
-    /// Views `features` again as segments had viewed them that had this layout.
+    /// Views `features` with the layout of earlier segments.
     ///
     /// # Errors
-    /// [`Error::Length`] if the matrix is of another size.
+    /// [`Error::Length`] if the size of the matrix differs.
     pub fn again(features: &'a [T], layout: &Arc<Layout>) -> Result<Self, Error> {
         let segments = Self { features, layout: Arc::clone(layout) };
         check_length("features", layout.members.len(), segments.poses().div_ceil(64))?;
@@ -68,43 +68,43 @@ impl<'a, T: Real> Segments<'a, T> {
         Ok(segments)
     }
 
-    /// Which of them are candidates, to view the same matrix [`again`](Self::again).
+    /// The layout, to view the same matrix [`again`](Self::again).
     #[must_use]
     pub fn layout(&self) -> &Arc<Layout> {
         &self.layout
     }
 
-    /// Numbers of a pose.
+    /// Values per pose.
     #[must_use]
     pub fn dims(&self) -> usize {
         self.layout.dims
     }
 
-    /// Poses of a segment.
+    /// Poses per segment.
     #[must_use]
     pub fn length(&self) -> usize {
         self.layout.length
     }
 
-    /// Numbers of a segment.
+    /// Values per segment.
     #[must_use]
     pub fn width(&self) -> usize {
         self.layout.length * self.layout.dims
     }
 
-    /// How many poses there are.
+    /// Number of poses.
     #[must_use]
     pub fn poses(&self) -> usize {
         self.features.len() / self.layout.dims
     }
 
-    /// How many candidates there are.
+    /// Number of candidates.
     #[must_use]
     pub fn candidates(&self) -> usize {
         self.layout.clips.iter().map(Range::len).sum()
     }
 
-    /// The candidates of each clip that has some.
+    /// The candidates of each clip that has any.
     #[must_use]
     pub fn clips(&self) -> &[Range<usize>] {
         &self.layout.clips
@@ -117,14 +117,14 @@ impl<'a, T: Real> Segments<'a, T> {
         self.layout.members.get(end / 64).is_some_and(|word| word >> (end % 64) & 1 == 1)
     }
 
-    /// The numbers of the candidate that ends at a pose.
+    /// The values of the candidate that ends at a pose.
     #[inline(always)]
     #[must_use]
     pub fn at(&self, end: usize) -> &'a [T] {
         &self.features[(end + 1 - self.layout.length) * self.layout.dims..(end + 1) * self.layout.dims]
     }
 
-    /// The numbers of the poses of candidates in sequence.
+    /// The values of the poses of consecutive candidates.
     #[inline(always)]
     pub(super) fn rows(&self, ends: &Range<usize>) -> &'a [T] {
         &self.features[(ends.start + 1 - self.layout.length) * self.layout.dims..ends.end * self.layout.dims]
@@ -136,7 +136,7 @@ impl<'a, T: Real> Segments<'a, T> {
     }
 }
 
-/// Sets the bits of a range that is not empty.
+/// Sets the bits of a non-empty range.
 fn fill(words: &mut [u64], bits: &Range<usize>) {
     let (first, last) = (bits.start / 64, (bits.end - 1) / 64);
     let (from, to) = (u64::MAX << (bits.start % 64), u64::MAX >> (63 - (bits.end - 1) % 64));

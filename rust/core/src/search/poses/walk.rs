@@ -1,11 +1,11 @@
-//! Search from frame to frame: the nearest segments of one frame lie near those of the next.
+//! Approximate search from frame to frame: the nearest segments of one frame lie near those of the next.
 //!
-//! J. Chai and J. K. Hodgins, "Performance animation from low-dimensional control signals", 2005: the nearest of a frame lie near those
-//! of the frame before. From them and their successors the search goes on to the neighbours of the nearest that is known, in the graph and
-//! in time, as long as that leads nearer than the last of a list that is longer than what is sought (Y. A. Malkov and D. A. Yashunin,
-//! "Efficient and robust approximate nearest neighbor search using hierarchical navigable small world graphs", 2020, algorithm 2).
-//! What was lost on the way is found again by full searches, at the start, in regular intervals, and where the last of the
-//! nearest is farther than it was.
+//! J. Chai and J. K. Hodgins, "Performance animation from low-dimensional control signals", 2005. The search starts
+//! from the neighbours of the previous frame and their successors. It then expands the nearest known segment, in the
+//! graph and in time, until that yields nothing nearer than the last of a list longer than the result (Y. A. Malkov
+//! and D. A. Yashunin, "Efficient and robust approximate nearest neighbor search using hierarchical navigable small
+//! world graphs", 2020, algorithm 2). Full searches recover neighbours that the walk has lost: at the start, at
+//! regular intervals, and when the last neighbour is farther than expected.
 
 use super::graph::Graph;
 use super::{Best, Index, Probe, Segments, kernels};
@@ -13,59 +13,59 @@ use crate::error::check_length;
 use crate::{Error, Real};
 use std::ops::Range;
 
-/// When the results of a walk are not enough.
+/// When a walk falls back to a full search.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Trust {
-    /// Frames after a full search until the next; 0: each frame has one.
+pub struct Fallback {
+    /// Frames after a full search until the next; 0: every frame has one.
     pub frames: usize,
-    /// How many times as far as it was at best since the last full search the last of the nearest segments may be.
+    /// Largest distance of the last neighbour, relative to the smallest since the last full search.
     pub ratio: f64,
 }
 
-/// What all searches along a motion share.
+/// Data shared by all searches along a motion.
 #[derive(Debug, Clone, Copy)]
 pub struct Database<'a, T> {
     /// The candidates.
     pub segments: &'a Segments<'a, T>,
     /// Their index.
     pub index: &'a Index<T>,
-    /// Their neighbours.
+    /// Their graph of neighbours.
     pub graph: Graph<'a>,
 }
 
 /// A search along a motion.
 #[derive(Debug)]
 pub struct Walk<T> {
-    /// How many are sought.
+    /// Number of neighbours sought.
     count: usize,
-    trust: Trust,
-    /// As many as are gone out from.
+    fallback: Fallback,
+    /// The segments known so far, as many as are expanded.
     best: Best<T>,
     probe: Probe<T>,
-    /// Those of the frame before.
+    /// The neighbours of the previous frame.
     before: Vec<usize>,
     /// Frames since the last full search; `None`: there was none.
     since: Option<usize>,
-    /// The least squared distance to the last of the nearest since the last full search.
+    /// The least squared distance of the last neighbour since the last full search.
     least: T,
-    /// A bit for each pose that was measured in this frame.
+    /// One bit per pose: measured in this frame.
     seen: Vec<u64>,
-    /// A bit for each whose neighbours were.
+    /// One bit per pose: expanded in this frame.
     left: Vec<u64>,
-    /// Where there are such bits.
+    /// Poses whose bits are set.
     touched: Vec<usize>,
     firsts: Vec<u32>,
     squares: Vec<T>,
 }
 
 impl<T: Real> Walk<T> {
-    /// A search for the `count` nearest segments in each frame, which goes out from the `breadth` nearest that it knows, at least
+    /// A search for the `count` nearest segments in each frame that expands the `breadth` nearest it knows, at least
     /// `count`.
     #[must_use]
-    pub fn new(count: usize, breadth: usize, trust: Trust) -> Self {
+    pub fn new(count: usize, breadth: usize, fallback: Fallback) -> Self {
         Self {
             count,
-            trust,
+            fallback,
             best: Best::new(breadth.max(count)),
             probe: Probe::new(&[]),
             before: Vec::new(),
@@ -79,18 +79,18 @@ impl<T: Real> Walk<T> {
         }
     }
 
-    /// Forgets the frames before: the next frame has a full search.
+    /// Discards the state of the previous frames: the next frame has a full search.
     pub fn reset(&mut self) {
         self.since = None;
     }
 
-    /// Finds the segments that are nearest to `query`, `(length, dims)` in C order, but for those that are `excluded`: the first of
-    /// those that are returned.
+    /// Finds the segments nearest to `query`, `(length, dims)` in C order, except for the `excluded` ones. The result
+    /// are the first `count` of the segments returned.
     ///
-    /// Says whether there was a full search.
+    /// Also returns whether there was a full search.
     ///
     /// # Errors
-    /// [`Error::Length`] if the query is of another length than the segments.
+    /// [`Error::Length`] if the length of the query is not that of the segments.
     pub fn next(
         &mut self,
         database: Database<'_, T>,
@@ -105,35 +105,36 @@ impl<T: Real> Walk<T> {
             self.since = None;
             return Ok((&self.best, false));
         }
-        let walked = self.since.is_some_and(|since| since < self.trust.frames);
+        let walked = self.since.is_some_and(|since| since < self.fallback.frames);
         if walked {
             self.go(database, excluded);
         }
-        let ratio = T::from_f64(self.trust.ratio);
-        let trusted = walked
+        let ratio = T::from_f64(self.fallback.ratio);
+        let kept = walked
             && self
                 .last()
                 .is_some_and(|square| !ratio.is_finite() || square.sqrt() <= self.least.sqrt() * ratio);
-        if !trusted {
+        if !kept {
             let made = index.query(query, segments.dims(), excluded.clone());
             let bests = std::slice::from_mut(&mut self.best);
             index.search(segments, &[made], bests, &mut self.squares);
         }
         if let Some(square) = self.last() {
-            self.least = if trusted { self.least.min(square) } else { square };
+            self.least = if kept { self.least.min(square) } else { square };
         }
-        self.since = Some(if trusted { self.since.map_or(0, |since| since + 1) } else { 0 });
+        self.since = Some(if kept { self.since.map_or(0, |since| since + 1) } else { 0 });
         self.before.clear();
         self.before.extend(self.best.found().iter().map(|found| found.1));
-        Ok((&self.best, !trusted))
+        Ok((&self.best, !kept))
     }
 
-    /// The squared distance of the last of those that are sought.
+    /// The squared distance of the last of the `count` nearest.
     fn last(&self) -> Option<T> {
         self.best.found().get(self.count.checked_sub(1)?).map(|last| last.0)
     }
 
-    /// Goes out from what the frame before tells of, from the nearest that is known to its neighbours, as long as that leads nearer.
+    /// Starts from the neighbours of the previous frame and expands the nearest known segment until that yields
+    /// nothing nearer.
     fn go(&mut self, database: Database<'_, T>, excluded: &Range<usize>) {
         let words = database.segments.poses().div_ceil(64);
         for bits in [&mut self.seen, &mut self.left] {
@@ -160,7 +161,7 @@ impl<T: Real> Walk<T> {
             for neighbor in beside.chain(database.graph.of(end)) {
                 self.see(database.segments, excluded, neighbor);
             }
-            // All before this one have been left; what came in before it has not.
+            // All before this index have been expanded; a segment inserted before it has not.
             at = at.min(self.measure(database.segments));
         }
         for &end in &self.touched {
@@ -169,20 +170,20 @@ impl<T: Real> Walk<T> {
         }
     }
 
-    /// Takes note of a candidate, unless it was seen in this frame.
+    /// Adds a candidate to those to be measured, unless it was in this frame already.
     fn see(&mut self, segments: &Segments<'_, T>, excluded: &Range<usize>, end: usize) {
         let (word, bit) = (end / 64, 1 << (end % 64));
         if segments.contains(end) && self.seen[word] & bit == 0 && !excluded.contains(&end) {
             self.seen[word] |= bit;
             self.touched.push(end);
-            // Those of a graph fit.
+            // The conversion cannot fail: indices of a graph are 32-bit.
             self.firsts.extend(u32::try_from(end + 1 - segments.length()));
         }
     }
 
-    /// Offers the candidates that were seen last, and says where the first of them that is among the nearest lies.
+    /// Measures and offers the added candidates, and returns the index in the list of the nearest of them.
     fn measure(&mut self, segments: &Segments<'_, T>) -> usize {
-        // In the order of the memory.
+        // In memory order.
         self.firsts.sort_unstable();
         self.squares.clear();
         self.squares.resize(self.firsts.len(), T::ZERO);

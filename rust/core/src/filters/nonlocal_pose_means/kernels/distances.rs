@@ -42,7 +42,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Half rotation vectors `log(q⁻¹r)` of the shorter way.
+    /// Half rotation vectors `log(q⁻¹r)` of the shorter rotation.
     pub(in super::super) fn pair_logs<T: Real>(q: [&[T]; 4], r: [&[T]; 4], x: &mut [T], y: &mut [T], z: &mut [T]) {
         let n = x.len();
         let q = q.map(|q| &q[..n]);
@@ -69,7 +69,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Patch distances to exponents: divided by three times the share that entered; infinite where nothing did.
+    /// Converts patch distances to exponents: divides by three times the sum of weights; infinite where that is 0.
     pub(in super::super) fn divide_by_shares<T: Real>(e: &mut [T], shares: &[T]) {
         let n = e.len();
         let shares = &shares[..n];
@@ -82,7 +82,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Infinite exponents where nothing entered.
+    /// Sets exponents to infinity where the sum of weights is 0.
     pub(in super::super) fn exclude_without_shares<T: Real>(e: &mut [T], shares: &[T]) {
         let n = e.len();
         let shares = &shares[..n];
@@ -92,7 +92,7 @@ multiversion! {
     }
 }
 
-/// The exponent beyond which a candidate has no weight, in either precision.
+/// Exponent beyond which a candidate has no weight, in either precision.
 pub(in super::super) const FARTHEST: f64 = 120.0;
 
 multiversion! {

@@ -1,4 +1,4 @@
-//! The vectorised loops: maps over frames on planes.
+//! Vectorised loops over frames on planes.
 
 mod distances;
 mod sums;
@@ -13,6 +13,6 @@ pub(super) use distances::{
 };
 pub(super) use sums::{Lags, accumulate, add_products, note_weights, settle, settle_local};
 
-/// Weights are kept times `e⁶⁰`, so that those far below the floor of the self-weight are still normal float32 numbers
-/// and sums of a million of the largest do not overflow.
+/// Weights are stored times `e⁶⁰`. So weights far below the floor of the self-weight are still normal float32
+/// numbers, and sums of a million of the largest do not overflow.
 pub(super) const SHIFT: f64 = 60.0;

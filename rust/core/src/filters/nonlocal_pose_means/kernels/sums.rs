@@ -6,7 +6,7 @@ use crate::clip::Planes;
 use crate::simd::multiversion;
 
 multiversion! {
-    /// Keeps the largest weight and adds to the total.
+    /// Updates the largest weight and the total.
     pub(in super::super) fn note_weights<T: Real>(most: &mut [T], total: &mut [T], weights: &[T]) {
         let n = weights.len();
         let (most, total) = (&mut most[..n], &mut total[..n]);
@@ -30,24 +30,24 @@ multiversion! {
 
 /// The weights of a block of lags.
 pub(in super::super) struct Lags<'a, T> {
-    /// Where the first frame of the tile stands in the planes.
+    /// Index of the tile's first frame in the planes.
     pub(in super::super) at: usize,
     /// The first lag.
     pub(in super::super) first: usize,
-    /// How many lags.
+    /// Number of lags.
     pub(in super::super) count: usize,
-    /// Weights of later samples, a row per lag.
+    /// Weights of later samples, one row per lag.
     pub(in super::super) forward: &'a Planes<T>,
-    /// Weights of earlier samples, a row per lag.
+    /// Weights of earlier samples, one row per lag.
     pub(in super::super) backward: &'a Planes<T>,
-    /// Whether the sums begin with this block.
+    /// Whether this block is the first of the sums.
     pub(in super::super) fresh: bool,
 }
 
 multiversion! {
     /// Adds, for each lag of a block, the weighted later and earlier samples of `N` planes.
     ///
-    /// Samples outside of the planes must have weight 0.
+    /// Samples outside the planes must have weight 0.
     pub(in super::super) fn accumulate<T: Real, const N: usize>(
         sums: [&mut [T]; N], planes: [&[T]; N], block: &Lags<'_, T>,
     ) {
@@ -96,7 +96,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Means in the chart: `(sums + own·x) / (total + own)`, into `sums`; `x` itself where nothing has weight.
+    /// Means in the chart: `(sums + own·x) / (total + own)`, into `sums`; `x` itself where the total weight is 0.
     pub(in super::super) fn settle<T: Real>(sums: &mut [T], x: &[T], total: &[T], own: &[T]) {
         let n = sums.len();
         let (x, total, own) = (&x[..n], &total[..n], &own[..n]);
@@ -109,7 +109,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Means about the sample itself: `sums / (total + own)`, into `sums`; 0 where nothing has weight.
+    /// Means relative to the sample itself: `sums / (total + own)`, into `sums`; 0 where the total weight is 0.
     pub(in super::super) fn settle_local<T: Real>(sums: &mut [T], total: &[T], own: &[T]) {
         let n = sums.len();
         let (total, own) = (&total[..n], &own[..n]);

@@ -1,10 +1,10 @@
-//! How far the patches of the candidates are, and which of them are the most similar.
+//! Patch distances of the candidates, and the most similar ones.
 
 use super::Means;
 use super::kernels::add;
 use crate::filters::nonlocal_pose_means::{Distance, Reach, Weights};
 
-/// How far candidates are, or how much they weigh: for each lag a column per weight.
+/// Exponents or weights of candidates: for each lag, one column per weight.
 pub(super) struct Candidates {
     pub(super) exponents: Vec<f64>,
     shares: Vec<f64>,
@@ -20,7 +20,7 @@ impl Candidates {
         self.shares.fill(0.0);
     }
 
-    /// Makes exponents of sums of distances; infinite where nothing entered.
+    /// Converts sums of distances to exponents; infinite where the sum of weights is 0.
     fn settle(&mut self, distance: Distance) {
         for (exponent, share) in self.exponents.iter_mut().zip(&self.shares) {
             let divisor = if distance == Distance::Mean { 3.0 * share } else { 1.0 };
@@ -29,13 +29,13 @@ impl Candidates {
     }
 }
 
-/// How many weights a candidate has.
+/// Number of weights per candidate.
 pub(super) fn columns(weights: Weights, width: usize) -> usize {
     if weights == Weights::Joint { width.max(1) } else { 1 }
 }
 
 impl Means {
-    /// Sums the distances of frames over the patches of the frame that is filtered and of its candidates.
+    /// Sums the frame distances over the patches of the filtered frame and of its candidates.
     pub(super) fn compare(&mut self) {
         let Reach { ahead, before, after, .. } = self.reach;
         let columns = self.columns();
@@ -60,9 +60,9 @@ impl Means {
         later.settle(self.distance);
     }
 
-    /// Puts all but the most similar candidates infinitely far away.
+    /// Sets the exponents of all but the most similar candidates to infinity.
     ///
-    /// Of equal ones the nearer in time counts, then the earlier.
+    /// Ties go to the candidate nearer in time, then to the earlier one.
     pub(super) fn keep(&mut self, count: usize) {
         let columns = self.columns();
         let Self { earlier, later, sorted, .. } = self;

@@ -1,10 +1,10 @@
-//! The vectorised loops: maps over joints, or over candidates, on planes.
+//! Vectorised loops over joints or candidates on planes.
 
 use crate::Real;
 use crate::rotations::quaternion::{between, exp_one, log_one, log_short, product, unit};
 use crate::simd::multiversion;
 
-/// The exponent beyond which a candidate has no weight, as in the filter of the whole clip.
+/// Exponent beyond which a candidate has no weight, as in the filter of the whole clip.
 const FARTHEST: f64 = 120.0;
 
 multiversion! {
@@ -45,7 +45,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// `factor·share·‖v‖²` of the turns `v` from `q` to `r`.
+    /// `factor·share·‖v‖²` of the rotation vectors `v` from `q` to `r`.
     pub(super) fn turn_terms<T: Real>(q: [&[T]; 4], r: [&[T]; 4], factors: &[T], shares: &[T], terms: &mut [T]) {
         let n = terms.len();
         let (q, r) = (q.map(|q| &q[..n]), r.map(|r| &r[..n]));
@@ -71,7 +71,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// Exponents to weights; 0 beyond [`FARTHEST`].
+    /// Converts exponents to weights; 0 beyond [`FARTHEST`].
     pub(super) fn weigh<T: Real>(exponents: &mut [T]) {
         for e in exponents {
             let weight = (-*e).exp();
@@ -81,20 +81,20 @@ multiversion! {
 }
 
 multiversion! {
-    /// Keeps the largest weight, and then adds the weights times their confidence to the total.
-    pub(super) fn note<T: Real>(weights: &mut [T], trust: &[T], most: &mut [T], total: &mut [T]) {
+    /// Updates the largest weight, and adds the weights times their confidence to the total.
+    pub(super) fn note<T: Real>(weights: &mut [T], confidence: &[T], most: &mut [T], total: &mut [T]) {
         let n = weights.len();
-        let (trust, most, total) = (&trust[..n], &mut most[..n], &mut total[..n]);
+        let (confidence, most, total) = (&confidence[..n], &mut most[..n], &mut total[..n]);
         for i in 0..n {
             most[i] = most[i].max(weights[i]);
-            weights[i] *= trust[i];
+            weights[i] *= confidence[i];
             total[i] += weights[i];
         }
     }
 }
 
 multiversion! {
-    /// Adds the weighted turns from `q` to `r`.
+    /// Adds the weighted rotation vectors from `q` to `r`.
     pub(super) fn turn_to<T: Real>(q: [&[T]; 4], r: [&[T]; 4], weights: &[T], sums: [&mut [T]; 3]) {
         let n = weights.len();
         let (q, r) = (q.map(|q| &q[..n]), r.map(|r| &r[..n]));
@@ -122,18 +122,18 @@ multiversion! {
 }
 
 multiversion! {
-    /// Adds each frame's own weight, the largest of the others but at least `floor`, times its confidence.
-    pub(super) fn add_own<T: Real>(most: &[T], floor: T, trust: &[T], total: &mut [T]) {
+    /// Adds each frame's self-weight, the largest of the others but at least `floor`, times its confidence.
+    pub(super) fn add_own<T: Real>(most: &[T], floor: T, confidence: &[T], total: &mut [T]) {
         let n = total.len();
-        let (most, trust) = (&most[..n], &trust[..n]);
+        let (most, confidence) = (&most[..n], &confidence[..n]);
         for i in 0..n {
-            total[i] += most[i].max(floor) * trust[i];
+            total[i] += most[i].max(floor) * confidence[i];
         }
     }
 }
 
 multiversion! {
-    /// `q·exp(sums / total)`; `q` where nothing has weight.
+    /// `q·exp(sums / total)`; `q` where the total weight is 0.
     pub(super) fn move_from<T: Real>(q: [&[T]; 4], sums: [&[T]; 3], total: &[T], out: [&mut [T]; 4]) {
         let n = total.len();
         let (q, sums) = (q.map(|q| &q[..n]), sums.map(|sums| &sums[..n]));
@@ -151,7 +151,7 @@ multiversion! {
 }
 
 multiversion! {
-    /// `exp(v + sums / total)`; `exp v` where nothing has weight.
+    /// `exp(v + sums / total)`; `exp v` where the total weight is 0.
     pub(super) fn move_in_chart<T: Real>(v: [&[T]; 3], sums: [&[T]; 3], total: &[T], out: [&mut [T]; 4]) {
         let n = total.len();
         let (v, sums) = (v.map(|v| &v[..n]), sums.map(|sums| &sums[..n]));

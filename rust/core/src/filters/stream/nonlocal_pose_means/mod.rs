@@ -1,9 +1,10 @@
 //! Non-local pose means of a stream.
 //!
-//! The distance of two patches is a sum of distances of single frames. A new frame is compared with the frames of one search
-//! radius before it, once; the sums over the patches are taken anew for each frame, so that no error runs on.
+//! The distance of two patches is a sum of frame distances. A new frame is compared once with the frames within the
+//! search radius before it. The sums over the patches are recomputed for each frame, so rounding errors do not
+//! accumulate.
 //!
-//! - here: the window, and how far a new frame is from those before it;
+//! - here: the window, and the distances of a new frame from the previous ones;
 //! - `candidates`: patch distances, and the most similar patches;
 //! - `sums`: weighted sums, and back to quaternions;
 //! - `kernels`: the vectorised loops.
@@ -22,19 +23,20 @@ use candidates::{Candidates, columns};
 use kernels::{lead_terms, logs, multiply, turn_terms};
 use sums::Sums;
 
-/// Factors of squares beyond it weigh nothing but equal rotations, and the products stay finite.
+/// Largest factor of squares: with it only equal rotations have weights, and the products stay finite.
 const LARGEST_FACTOR: f64 = 1e30;
 
-/// Planes of a frame: its unit quaternions (local chart), or half rotation vectors and one to spare, and its confidences.
+/// Planes of a frame: its unit quaternions (local chart), or half rotation vectors and one unused plane; then its
+/// confidences.
 const PLANES: usize = 5;
 
 impl NonlocalPoseMeans {
-    /// The filter as a stream, over poses with a joint for each bandwidth.
+    /// The filter as a stream, over poses with one joint per bandwidth.
     ///
-    /// Of the chart, the boundary and the search radius only those will do that the first pose that comes out can know of.
+    /// Chart, boundary and search radius must be computable when the first result is due.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for options that ask for the whole clip, or for too much memory.
+    /// [`Error::Parameter`] for options that require the whole clip, and for too much memory.
     pub fn stream(&self) -> Result<PoseStream, Error> {
         let joints = self.bandwidth.len();
         let refused = |name, expected| Err(Error::Parameter { name, expected });
@@ -51,7 +53,7 @@ impl NonlocalPoseMeans {
     }
 }
 
-/// The latest frames, how far they are from each other, and the mean of one of them.
+/// The latest frames, their distances, and the mean of one of them.
 struct Means {
     reach: Reach,
     distance: Distance,
@@ -62,19 +64,20 @@ struct Means {
     /// `2/h²` per joint: half rotation vectors have a quarter of the squares.
     factors: Vec<f64>,
     frames: Ring<PLANES>,
-    /// Per frame and for each lag: its distance from the frame so long before, and the share of confidence that entered it.
+    /// Per frame and for each lag: its distance from the frame that long before, and the sum of confidence weights in
+    /// it.
     pairs: Ring<2>,
-    /// Distances of a pair per joint, and shares.
+    /// Distances of a pair per joint, and weights.
     terms: [Vec<f64>; 2],
     earlier: Candidates,
     later: Candidates,
-    /// Distances of one column and places of candidates, the nearest in time first.
+    /// Distances of one column and indices of candidates, the nearest in time first.
     sorted: Vec<(f64, usize)>,
     sums: Sums,
 }
 
 impl Means {
-    /// `None` if it would take too much memory.
+    /// `None` if the memory is too large.
     fn new(filter: &NonlocalPoseMeans) -> Option<Self> {
         let joints = filter.bandwidth.len();
         let width = width(joints);
@@ -118,8 +121,8 @@ impl Window for Means {
     }
 
     fn admit(&mut self, pose: &Pose) {
-        let [a, b, c, d, trust] = self.frames.advance();
-        trust.copy_from_slice(pose.confidence());
+        let [a, b, c, d, confidence] = self.frames.advance();
+        confidence.copy_from_slice(pose.confidence());
         if self.local {
             for (plane, q) in [a, b, c, d].into_iter().zip(pose.rotations()) {
                 plane.copy_from_slice(q);
@@ -130,11 +133,11 @@ impl Window for Means {
         let columns = self.columns();
         let Self { frames, pairs, terms: [terms, shares], factors, local, joints, .. } = self;
         let [distances, entered] = pairs.advance();
-        let [a, b, c, d, trust] = frames.ago(0);
+        let [a, b, c, d, confidence] = frames.ago(0);
         let lags = distances.chunks_exact_mut(columns).zip(entered.chunks_exact_mut(columns));
         for (lag, (distances, entered)) in (1..).zip(lags) {
             let [p, q, r, s, other] = frames.ago(lag);
-            multiply(trust, other, shares);
+            multiply(confidence, other, shares);
             if *local {
                 turn_terms([p, q, r, s], [a, b, c, d], factors, shares, terms);
             } else {

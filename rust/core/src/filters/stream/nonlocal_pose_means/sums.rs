@@ -1,4 +1,4 @@
-//! From how far the candidates are to their mean.
+//! From patch distances of the candidates to their mean.
 
 use super::Means;
 use super::kernels::{add_own, lead_to, move_from, move_in_chart, note, turn_to, weigh};
@@ -9,7 +9,7 @@ use crate::filters::stream::pose::Pose;
 /// Exponent of the floor of the self-weight, as in the filter of the whole clip.
 const FLOOR: f64 = -80.0;
 
-/// Sums over the candidates, planes over the joints.
+/// Sums over the candidates, as planes over the joints.
 pub(super) struct Sums {
     weights: Vec<f64>,
     most: Vec<f64>,
@@ -25,7 +25,7 @@ impl Sums {
 }
 
 impl Means {
-    /// Sums the weights of candidates, and where they lie as seen from the frame that is filtered.
+    /// Sums the weights of candidates, and their displacements from the filtered frame.
     pub(super) fn sum(&mut self) {
         let Reach { ahead, after, .. } = self.reach;
         let columns = self.columns();
@@ -39,13 +39,13 @@ impl Means {
         for (candidates, before) in [(earlier, true), (later, false)] {
             weigh(&mut candidates.exponents);
             for (lag, likeness) in (1..).zip(candidates.exponents.chunks_exact(columns)) {
-                let [p, q, r, s, trust] = frames.ago(if before { now + lag } else { now - lag });
+                let [p, q, r, s, confidence] = frames.ago(if before { now + lag } else { now - lag });
                 if let [one] = *likeness {
                     weights.fill(one);
                 } else {
                     weights.copy_from_slice(likeness);
                 }
-                note(weights, trust, most, total);
+                note(weights, confidence, most, total);
                 if *local {
                     turn_to([a, b, c, d], [p, q, r, s], weights, turn.each_mut().map(|turn| &mut turn[..]));
                 } else {
@@ -55,11 +55,11 @@ impl Means {
         }
     }
 
-    /// Writes the mean, with the weight of the frame itself.
+    /// Writes the mean, including the frame itself with its self-weight.
     pub(super) fn mean(&mut self, out: &mut Pose) {
         let Self { frames, sums: Sums { most, total, turn, .. }, local, .. } = self;
-        let [a, b, c, d, trust] = frames.ago(self.reach.ahead + self.reach.after);
-        add_own(most, Real::exp(FLOOR), trust, total);
+        let [a, b, c, d, confidence] = frames.ago(self.reach.ahead + self.reach.after);
+        add_own(most, Real::exp(FLOOR), confidence, total);
         let turn = turn.each_ref().map(|turn| &turn[..]);
         if *local {
             move_from([a, b, c, d], turn, total, out.rotations_mut());

@@ -1,34 +1,35 @@
-//! Control points of the last frames, and how poses of the database fit them.
+//! Control points of the last frames, and the fit of database poses to them.
 
 use super::poses::Poses;
-use super::trails::LANES;
+use super::trajectories::LANES;
 use crate::reconstruction::frame::HORIZONTAL;
 use crate::simd::multiversion;
 
-/// A control point of one frame, as a weighted point of the plane with a height.
+/// A control point of one frame: weight, horizontal position and height.
 #[derive(Debug, Clone, Copy)]
-struct Seen {
-    /// Where its row of the trails lies before that of the candidate, and in it.
+struct Observation {
+    /// Lag and index of the control point: its row in the trajectories, relative to the candidate.
     lag: usize,
     point: usize,
-    /// Which it is of a candidate's control points side by side.
-    place: usize,
+    /// Its index among the control points of a candidate.
+    slot: usize,
     share: f64,
     level: [f64; 2],
     height: f64,
 }
 
-/// How a pose of the database lies on the control points.
+/// Rigid fit of a database pose to the control points: rotation about the up axis and horizontal shift.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fit {
-    /// Real and imaginary part of `Σ w z̄_i c_i`, whose angle is the turn.
+    /// Real and imaginary part of `Σ w z̄_i c_i`, whose argument is the rotation angle.
     product: [f64; 2],
     mean: [f64; 2],
 }
 
 multiversion! {
-    /// Weighted means of the squared distances that are left; `planes` are as in [`Trails`](super::trails::Trails).
-    fn distances(planes: &[f32], seen: &[Seen], spread: f64, out: &mut [f64]) {
+    /// Weighted mean squared distances after the best fit; `planes` are as in
+    /// [`Trajectories`](super::trajectories::Trajectories).
+    fn distances(planes: &[f32], seen: &[Observation], spread: f64, out: &mut [f64]) {
         let groups = out.len().div_ceil(LANES).max(1);
         for (planes, out) in planes.chunks_exact((planes.len() / groups).max(1)).zip(out.chunks_mut(LANES)) {
             let (planes, _) = planes.as_chunks::<LANES>();
@@ -36,7 +37,7 @@ multiversion! {
             let (mut square, mut height) = ([0.0; LANES], [0.0; LANES]);
             let mut origin = [[0.0; LANES]; 2];
             for (i, seen) in seen.iter().enumerate() {
-                let (x, y, up) = (&planes[3 * seen.place], &planes[3 * seen.place + 1], &planes[3 * seen.place + 2]);
+                let (x, y, up) = (&planes[3 * seen.slot], &planes[3 * seen.slot + 1], &planes[3 * seen.slot + 2]);
                 if i == 0 {
                     for lane in 0..LANES {
                         origin[0][lane] = f64::from(x[lane]);
@@ -68,42 +69,36 @@ multiversion! {
     }
 }
 
-/// Control points of the frame in question and of some before.
+/// Control points of the current frame and of some previous ones.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Sight {
-    seen: Vec<Seen>,
-    /// Weighted mean of the level coordinates.
+pub(super) struct Observations {
+    seen: Vec<Observation>,
+    /// Weighted mean of the horizontal coordinates.
     mean: [f64; 2],
     /// Weighted mean of their squared distances from it.
     spread: f64,
 }
 
-impl Sight {
-    /// Starts anew.
+impl Observations {
+    /// Removes all observations.
     pub(super) fn clear(&mut self) {
         self.seen.clear();
     }
 
-    /// Takes in the points `(points, 3)` of a frame with their weights; `(place, lag)` are which frame of the window it is, and
-    /// how many frames ago.
-    pub(super) fn add(
-        &mut self,
-        (place, lag): (usize, usize),
-        positions: &[f64],
-        weights: &[f64],
-        up: usize,
-    ) {
+    /// Adds the points `(points, 3)` of a frame with their weights. `(slot, lag)` are the index of the frame in the
+    /// window and its lag in frames.
+    pub(super) fn add(&mut self, (slot, lag): (usize, usize), positions: &[f64], weights: &[f64], up: usize) {
         let [first, second] = HORIZONTAL[up];
         for (point, (at, &share)) in positions.chunks_exact(3).zip(weights).enumerate() {
             if share > 0.0 {
                 let level = [at[first], at[second]];
-                let place = place * weights.len() + point;
-                self.seen.push(Seen { lag, point, place, share, level, height: at[up] });
+                let slot = slot * weights.len() + point;
+                self.seen.push(Observation { lag, point, slot, share, level, height: at[up] });
             }
         }
     }
 
-    /// Turns weights into shares, and takes the mean away.
+    /// Normalises the weights to sum 1, and subtracts the weighted mean.
     pub(super) fn finish(&mut self) {
         let total: f64 = self.seen.iter().map(|seen| seen.share).sum();
         self.mean = [0.0; 2];
@@ -120,25 +115,25 @@ impl Sight {
         }
     }
 
-    /// How many control points are compared.
-    pub(super) fn marks(&self) -> usize {
+    /// Number of observed control points.
+    pub(super) fn count(&self) -> usize {
         self.seen.len()
     }
 
-    /// The distances that [`fit`](Self::fit) leaves, of candidates side by side.
+    /// Squared distances after the best fit, of candidates side by side.
     pub(super) fn distances(&self, planes: &[f32], out: &mut [f64]) {
         distances(planes, &self.seen, self.spread, out);
     }
 
-    /// Lays a pose on the points: turned about the up axis, and moved on the ground.
+    /// Fits a pose to the points by a rotation about the up axis and a horizontal shift.
     pub(super) fn fit(&self, poses: &Poses<'_>, points: usize, candidate: usize, up: usize) -> Fit {
         let [first, second] = HORIZONTAL[up];
         let (mut mean, mut product) = ([0.0; 2], [0.0; 2]);
-        // From the first point: coordinates of a clip may be large.
+        // Relative to the first point: coordinates of a clip may be large.
         let mut origin = [0.0; 2];
         for (i, seen) in self.seen.iter().enumerate() {
             let row = 3 * ((candidate - seen.lag) * points + seen.point);
-            let at = &poses.trails[row..row + 3];
+            let at = &poses.trajectories[row..row + 3];
             let z = [f64::from(at[first]), f64::from(at[second])];
             if i == 0 {
                 origin = z;
@@ -151,22 +146,22 @@ impl Sight {
         Fit { product, mean: [mean[0] + origin[0], mean[1] + origin[1]] }
     }
 
-    /// By how much a pose is turned, and moved after the turn.
-    pub(super) fn laid(&self, fit: &Fit) -> (f64, [f64; 2]) {
+    /// Rotation angle of a fit, and the shift after the rotation.
+    pub(super) fn transform(&self, fit: &Fit) -> (f64, [f64; 2]) {
         let [c, s] = fit.direction();
         let angle = crate::Real::atan2_nonnegative(s.abs(), c).copysign(s);
         let moved = [c * fit.mean[0] - s * fit.mean[1], s * fit.mean[0] + c * fit.mean[1]];
         (angle, [self.mean[0] - moved[0], self.mean[1] - moved[1]])
     }
 
-    /// Whether the points lie farther than `scale` from their middle as seen from above, root mean square: nearer ones do not tell
-    /// a heading.
-    pub(super) fn tells_heading(&self, scale: f64) -> bool {
+    /// Whether the root-mean-square horizontal distance of the points from their mean exceeds `scale`. Otherwise they
+    /// do not determine a heading.
+    pub(super) fn determines_heading(&self, scale: f64) -> bool {
         self.spread > scale * scale
     }
 
-    /// What is left between the points and a pose that is laid on them: two level coordinates and the height of each, and its share.
-    pub(super) fn left<'a>(
+    /// Residuals of a fitted pose at the points: two horizontal coordinates and the height, with the weight.
+    pub(super) fn residuals<'a>(
         &'a self,
         poses: &'a Poses<'_>,
         points: usize,
@@ -177,7 +172,7 @@ impl Sight {
         let [c, s] = fit.direction();
         self.seen.iter().map(move |seen| {
             let row = 3 * ((candidate - seen.lag) * points + seen.point);
-            let at = &poses.trails[row..row + 3];
+            let at = &poses.trajectories[row..row + 3];
             let z = [f64::from(at[first]) - fit.mean[0], f64::from(at[second]) - fit.mean[1]];
             let x = c * z[0] - s * z[1] - seen.level[0];
             let y = s * z[0] + c * z[1] - seen.level[1];
@@ -185,7 +180,7 @@ impl Sight {
         })
     }
 
-    /// Where a place on the ground comes when a pose is laid on the points.
+    /// Position on the ground after the fit.
     pub(super) fn moved(&self, fit: &Fit, place: [f64; 2]) -> [f64; 2] {
         let [c, s] = fit.direction();
         let z = [place[0] - fit.mean[0], place[1] - fit.mean[1]];
@@ -194,7 +189,7 @@ impl Sight {
 }
 
 impl Fit {
-    /// Cosine and sine of the turn.
+    /// Cosine and sine of the rotation angle.
     fn direction(&self) -> [f64; 2] {
         let [re, im] = self.product;
         let length = (re * re + im * im).sqrt();

@@ -1,4 +1,4 @@
-//! Queries among their examples.
+//! Shrinkage of queries towards their examples.
 
 use crate::rotations::quaternion::{between, dot, exp_one, log_short, of_row, product, unit};
 use crate::simd::multiversion;
@@ -6,16 +6,17 @@ use crate::simd::multiversion;
 /// Examples side by side.
 const LANES: usize = 8;
 
-/// How far beside the mean of its examples a query may lie, in their root mean square distances: people differ from each other by
-/// more than examples do, and what is peculiar to one says nothing about the others.
+/// Largest distance of a query from the mean of its examples, relative to their root-mean-square distance. People
+/// differ from each other more than examples do, and such a difference does not help to predict the next pose.
 const BESIDE: f64 = 0.5;
 
-/// Brings the last poses `(order, joints, 4)` back among those of the examples `(count, order + 1, joints, 4)`.
+/// Moves the last poses `(order, joints, 4)` towards those of the examples `(count, order + 1, joints, 4)`.
 ///
-/// A pose that lies farther from the mean of the examples' poses of that frame than [`BESIDE`] times as these do, root mean square and
-/// weighted by joint, is moved towards it until it does not. What a regression makes of a query beyond its examples is passed on to the next
-/// query, and a wrong pose would be kept.
-pub(super) fn within(segments: &[f64], recent: &[f64], weights: &[f64]) -> Vec<f64> {
+/// A pose is moved towards the mean of the examples' poses of the same frame if its distance exceeds [`BESIDE`] times
+/// their distance, both root mean square and weighted by joint. It is moved until the distances agree. Without this
+/// step, a regression extrapolates beyond its examples, the next query contains the result, and a wrong pose
+/// persists.
+pub(super) fn shrunk(segments: &[f64], recent: &[f64], weights: &[f64]) -> Vec<f64> {
     let width = 4 * weights.len();
     let length = recent.len() + width;
     let count = segments.len() / length;
@@ -59,7 +60,7 @@ pub(super) fn within(segments: &[f64], recent: &[f64], weights: &[f64]) -> Vec<f
 }
 
 multiversion! {
-    /// Sum of the squared angles between rotations and one.
+    /// Sum of the squared angles between rotations and their mean.
     fn squares(groups: &[[[f64; LANES]; 4]], mean: [f64; 4]) -> f64 {
         let mut sums = [0.0; LANES];
         for group in groups {

@@ -1,4 +1,4 @@
-//! How alike the patches around two frames are: patch distances, as exponents and as weights.
+//! Patch distances between frames, as exponents and as weights.
 
 use super::kernels;
 use super::path::JointChart;
@@ -7,14 +7,14 @@ use super::{Distance, Reach};
 use crate::Real;
 use std::ops::Range;
 
-/// The largest factor of a squared difference: sums of such products stay finite in float32 too.
+/// Largest factor of a squared difference: sums of such products stay finite in float32 too.
 const LARGEST_FACTOR: f64 = 1e30;
 
 /// Patch distances of the joints of a group, which share weights.
-pub(super) struct Likeness<'a, T> {
+pub(super) struct PatchDistances<'a, T> {
     tile: &'a Tile<'a, T>,
     group: Range<usize>,
-    /// Half rotation vectors between the frames of the last pairs, per joint in the local chart; else empty.
+    /// Half rotation vectors between the frames of the last pairs, per joint in the local chart; otherwise empty.
     pairs: Vec<[Vec<T>; 3]>,
     exponents: Vec<T>,
     entered: Vec<T>,
@@ -22,10 +22,10 @@ pub(super) struct Likeness<'a, T> {
     shares: Vec<T>,
     squares: Vec<T>,
     share: Vec<T>,
-    spare: Vec<T>,
+    scratch: Vec<T>,
 }
 
-impl<'a, T: Real> Likeness<'a, T> {
+impl<'a, T: Real> PatchDistances<'a, T> {
     pub(super) fn new(tile: &'a Tile<'a, T>, group: Range<usize>) -> Self {
         let pairs = group.clone().map(|_| std::array::from_fn(|_| Vec::new())).collect();
         Self {
@@ -38,7 +38,7 @@ impl<'a, T: Real> Likeness<'a, T> {
             shares: Vec::new(),
             squares: Vec::new(),
             share: Vec::new(),
-            spare: Vec::new(),
+            scratch: Vec::new(),
         }
     }
 
@@ -49,19 +49,19 @@ impl<'a, T: Real> Likeness<'a, T> {
         &self.exponents
     }
 
-    /// The weights that were last computed.
+    /// The weights computed last.
     pub(super) fn current(&self) -> &[T] {
         &self.exponents
     }
 
-    /// Half rotation vectors between the frames of the pairs that were last measured, for a joint in the local chart.
+    /// Half rotation vectors between the frames of the pairs computed last, for a joint in the local chart.
     pub(super) fn pair_logs(&self, joint: usize, pairs: Range<usize>) -> [&[T]; 3] {
         let before = self.tile.clip.reach.before;
         let [x, y, z] = &self.pairs[joint - self.group.start];
         [x, y, z].map(|v| &v[before + pairs.start..before + pairs.end])
     }
 
-    /// Measures pairs into `self.exponents`, up to the factor that is returned.
+    /// Computes the distances of pairs into `self.exponents`, up to the factor that is returned.
     fn measure(&mut self, lag: usize, pairs: Range<usize>) -> T {
         let Reach { before, after, .. } = self.tile.clip.reach;
         let span = pairs.start - before..pairs.end + after;
@@ -75,10 +75,10 @@ impl<'a, T: Real> Likeness<'a, T> {
         }
         let window = before + after + 1;
         self.exponents.resize(pairs.len(), T::ZERO);
-        kernels::sliding_sums(&mut self.distances, &mut self.spare, window, &mut self.exponents);
+        kernels::sliding_sums(&mut self.distances, &mut self.scratch, window, &mut self.exponents);
         if weighed {
             self.entered.resize(pairs.len(), T::ZERO);
-            kernels::sliding_sums(&mut self.shares, &mut self.spare, window, &mut self.entered);
+            kernels::sliding_sums(&mut self.shares, &mut self.scratch, window, &mut self.entered);
         }
         match (self.tile.clip.filter.distance, weighed) {
             (Distance::Mean, true) => kernels::divide_by_shares(&mut self.exponents, &self.entered),
@@ -95,7 +95,7 @@ impl<'a, T: Real> Likeness<'a, T> {
     fn add_joint(&mut self, joint: usize, lag: usize, span: Range<usize>) {
         let tile = self.tile;
         let other = span.start + lag..span.end + lag;
-        // Half rotation vectors: their squares are a quarter of the rotation vectors'.
+        // Half rotation vectors: their squares are a quarter of the squared angles.
         let factor = T::from_f64((2.0 / tile.clip.filter.bandwidth[joint].powi(2)).min(LARGEST_FACTOR));
         let (sums, direct) = if tile.confidence.is_some() {
             (&mut self.squares, T::ONE)
