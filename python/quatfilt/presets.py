@@ -69,11 +69,12 @@ PRESETS: Final[dict[str, Preset]] = {
     ),
     "video": Preset(
         "poses estimated from video, 24 to 60 frames per second: strong noise that hangs together in time",
-        {"despike": {}, "smooth": {"joints": "together", "noise": "measured"}},
+        {"despike": {"radius": "auto"}, "smooth": {"joints": "together", "noise": "measured"}},
         {"max_gap": 2 / 3},
         "expected",
         {
             "despike": "detectors mistake left for right, or lose a limb, for up to 0.375 s",
+            "despike.radius": "runs of 90 ms at any frame rate",
             "smooth.joints": "a body repeats itself",
             "smooth.noise": "noise of detectors hangs together in time and comes and goes",
             "max_gap": "20 frames of 30 per second, as in Pose2Sim: trackers lose a limb for so long behind another",

@@ -13,9 +13,7 @@ from quatfilt.presets import BEST, PRESETS
 every_preset = pytest.mark.parametrize("name", PRESETS)
 
 OTHERS = {
-    "butterworth": {"cutoff": 3.0},
-    "despike": {"radius": 3, "threshold": 0.5, "smallest": 0.0},
-    "nonlocal_pose_means": {"boundary": "linear"},
+    "despike": {"radius": 2, "threshold": 0.5, "smallest": 0.0},
     "smooth": {"strength": 2.0},
 }
 """Values that no preset has."""
