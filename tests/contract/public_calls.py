@@ -210,4 +210,4 @@ CALLS = {
     "wavelet": lambda a, _b, _v: qf.wavelet(with_gaps(a)),
     "weighted_moving_mean": lambda a, _b, _v: qf.weighted_moving_mean(with_gaps(a), iterations=3),
 }
-"""From the name to a call with what `samples` returns."""
+"""From the name, and what is special, to a call with what `samples` returns."""

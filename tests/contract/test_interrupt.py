@@ -38,9 +38,9 @@ CALLS = {
     "patches": (400_000, 20, "qf.patch_neighbors(q)"),
     "graph of poses": (200_000, 20, "qf.neighbor_graph(q.reshape(len(q), -1), [0, len(q)])"),
     "spikes of wide radius": (20_000, 20, "qf.despike(q, radius=1000, threshold=1.0, smallest=0.0)"),
-    "axes of a wide body": (4_000, 400, "_core.smooth_body(q, q, None, np.full(400, 0.05))"),
+    "axes of a body": (120_000, 100, "_core.smooth_body(q, q, None, np.full(100, 0.05))"),
 }
-"""Frames, joints, and minutes of work."""
+"""Frames, joints, and several seconds of work at least."""
 
 
 @pytest.mark.skipif(

@@ -45,7 +45,7 @@ def digests():
 
 def test_every_public_function_is_called():
     functions = {name for name in qf.__all__ if callable(getattr(qf, name))}
-    assert functions == CALLS.keys() | NOT_KERNELS.keys()
+    assert functions == {name.partition(" ")[0] for name in CALLS} | NOT_KERNELS.keys()
 
 
 @pytest.mark.parametrize("level", LEVELS)

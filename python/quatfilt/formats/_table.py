@@ -56,13 +56,17 @@ def _read_amc(path: str, data: bytes, fps: float | None, first_frame: str, skele
     return acclaim.read(path, data, skeleton, fps=fps, first_frame=first_frame)
 
 
+def _write_bvh(path: str, motion: Motion) -> bytes:
+    return bvh.write(path, motion)
+
+
 def _write_npz(path: str, motion: Motion) -> bytes:
     del path
     return npz.write(motion)
 
 
 FORMATS: Final[dict[str, Format]] = {
-    ".bvh": Format(_read_bvh, bvh.write),
+    ".bvh": Format(_read_bvh, _write_bvh),
     ".amc": Format(_read_amc, None, needs_skeleton=True, note="with its .asf"),
     ".npz": Format(_read_npz, _write_npz),
 }
