@@ -68,7 +68,7 @@ PRESETS: Final[dict[str, Preset]] = {
         },
     ),
     "video": Preset(
-        "poses estimated from video, 24 to 60 frames per second: strong noise that hangs together in time",
+        "poses estimated from video, 24 to 60 frames per second: strong, temporally correlated noise",
         {"despike": {"radius": "auto"}, "smooth": {"joints": "together", "noise": "measured"}},
         {"max_gap": 2 / 3},
         "expected",
@@ -76,7 +76,7 @@ PRESETS: Final[dict[str, Preset]] = {
             "despike": "detectors mistake left for right, or lose a limb, for up to 0.375 s",
             "despike.radius": "runs of 90 ms at any frame rate",
             "smooth.joints": "a body repeats itself",
-            "smooth.noise": "noise of detectors hangs together in time and comes and goes",
+            "smooth.noise": "noise of detectors is temporally correlated, and its level changes",
             "max_gap": "20 frames of 30 per second, as in Pose2Sim: trackers lose a limb for so long behind another",
             "jitter": "noise about as fast as limbs passes for motion: where the spectrum shows it, a low pass with the measured cut-off follows",
         },

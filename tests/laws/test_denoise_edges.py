@@ -1,4 +1,4 @@
-"""What must hold for `denoise` and `noise_model` on clips that are unlike motion."""
+"""Laws of `denoise` and `noise_model` on clips that are unlike motion."""
 
 import numpy as np
 import pytest
