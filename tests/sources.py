@@ -35,7 +35,7 @@ def between(q, times, new_times):
 
 
 def video(rng, q, level=0.12, rho=0.5):
-    """Noise that hangs together from frame to frame, far stronger than limbs jerk."""
+    """Noise that is correlated from frame to frame, with accelerations far above those of limbs."""
     noise = rng.normal(size=(*q.shape[:2], 3))
     noise[1:] *= np.sqrt(1 - rho**2)
     for t in range(1, len(noise)):

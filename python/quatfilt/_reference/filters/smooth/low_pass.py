@@ -1,4 +1,4 @@
-"""A low pass for motion whose noise hangs together in time: third differences are penalised."""
+"""A low pass for motion whose noise is temporally correlated: third differences are penalised."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-//! A low pass for motion whose noise hangs together in time: third differences are penalised.
+//! A low pass for motion whose noise is temporally correlated: third differences are penalised.
 //!
 //! The gain is `1/(1 + r⁶)`, `r = sin(π f/fps) / sin(π f_c/fps)`; parabolas stay as they are.
 
